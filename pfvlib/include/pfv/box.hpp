@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pfv {
+
+/// The six faces of the flow box. Even numbers are the lower faces; number / 2 is the axis.
+enum class Face { xlo, xhi, ylo, yhi, zlo, zhi };
+inline constexpr std::array<Face, 6> all_faces{Face::xlo, Face::xhi, Face::ylo,
+                                               Face::yhi, Face::zlo, Face::zhi};
+
+inline int axis_of(Face face) { return static_cast<int>(face) / 2; }
+inline bool is_upper(Face face) { return static_cast<int>(face) % 2 == 1; }
+/// Outward unit normal of a face.
+inline Eigen::Vector3d outward_normal(Face face) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  normal[axis_of(face)] = is_upper(face) ? 1.0 : -1.0;
+  return normal;
+}
+/// "xlo" ... "zhi".
+const char* name_of(Face face);
+/// Inverse of `name_of`; throws InputError for any other name.
+Face face_named(const std::string& name);
+
+/// How fluid slides along a sealed face. A face that fluid crosses (pressure or flux) is fluid, not
+/// wall: its type is ignored.
+enum class Wall { no_slip, symmetry };
+
+/// What the fluid meets at a face or patch.
+struct Boundary {
+  enum class Kind {
+    sealed,    ///< nothing crosses it
+    pressure,  ///< every pore on it carries `value` (Pa), or `profile(place, time)` if that is set
+    flux       ///< `value` m³/s cross it INTO the box; its pores share one unknown pressure
+  };
+  Kind kind = Kind::sealed;
+  double value = 0.0;
+  /// Imposed pressure (Pa) as a function of the pore's place (m) and of the flow time (s).
+  std::function<double(const Eigen::Vector3d&, double)> profile;
+
+  static Boundary sealed() { return {}; }
+  static Boundary pressure(double pascal) { return {Kind::pressure, pascal, {}}; }
+  static Boundary flux(double cubic_metres_per_second) {
+    return {Kind::flux, cubic_metres_per_second, {}};
+  }
+};
+
+/// One of the six plane walls of the box.
+struct FaceCondition {
+  Wall wall = Wall::no_slip;
+  Boundary boundary;
+  double velocity = 0.0;  ///< m/s along the face's axis, positive along +axis
+};
+
+/// A rectangle on a face with a boundary of its own, for instance an outlet. It takes the pores whose
+/// centre lies in it (borders included) or, where there is none, the pore of the face nearest to its
+/// middle. Where patches overlap, the later one wins.
+struct Patch {
+  Face face = Face::zhi;
+  /// a0, a1, b0, b1 (m): extent along the two other axes, in the order x, y, z.
+  std::array<double, 4> rectangle{};
+  Boundary boundary;
+};
+
+/// The flow box: six plane walls normal to the axes, m.
+///
+/// A pore that touches several faces takes the first of: imposed pressure (the mean, where it touches
+/// two faces with different ones), imposed flux (the first face in the order xlo ... zhi), sealed.
+struct Box {
+  Eigen::Vector3d lower = Eigen::Vector3d::Zero();
+  Eigen::Vector3d upper = Eigen::Vector3d::Ones();
+  std::array<FaceCondition, 6> faces;
+  std::vector<Patch> patches;
+
+  FaceCondition& operator[](Face face) { return faces[static_cast<int>(face)]; }
+  const FaceCondition& operator[](Face face) const { return faces[static_cast<int>(face)]; }
+  double position(Face face) const {
+    return is_upper(face) ? upper[axis_of(face)] : lower[axis_of(face)];
+  }
+  /// Area of a face, m².
+  double area(Face face) const {
+    const Eigen::Vector3d edge = upper - lower;
+    const int axis = axis_of(face);
+    return edge[(axis + 1) % 3] * edge[(axis + 2) % 3];
+  }
+  double volume() const { return (upper - lower).prod(); }
+};
+
+/// Throws InputError when the box is flat, inverted or not finite, or when a boundary value, a face
+/// velocity or a patch is not finite, inverted or outside its face.
+void check(const Box& box);
+
+}  // namespace pfv

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/flow.hpp"
+#include "pfv/packing.hpp"
+#include "pfv/report.hpp"
+
+#include <string>
+#include <vector>
+
+namespace pfv {
+
+/// Reads a packing: CSV with header `id,x,y,z,radius[,vx,vy,vz]`, or a LIGGGHTS text dump (the last
+/// snapshot; columns id, x, y, z, radius, and vx, vy, vz if present, in any order).
+/// Throws InputError naming file, line and field.
+PackingArrays read_packing(const std::string& path);
+
+// Every writer writes beside the target and renames at the end: a file is whole or absent.
+// Each throws FileError.
+
+/// `id,fx,fy,fz,fpx,fpy,fpz,fvx,fvy,fvz`, N; needs split forces.
+void write_forces(const std::string& path, const Packing& packing, const Forces& forces);
+
+/// The report as JSON, keys as in `Report`; absent values are null.
+void write_report(const std::string& path, const Report& report);
+
+/// Pores and throats as a VTK unstructured grid (.vtu, appended binary): a vertex cell a pore
+/// (pressure, volume), a line cell a throat (conductance, flux).
+void write_network(const std::string& path, const Flow& flow);
+
+/// Spheres as points of a .vtu: id, radius, force, velocity.
+void write_spheres(const std::string& path, const Packing& packing, const Forces& forces);
+
+/// One time step of a .pvd collection; `file` is relative to the collection's folder.
+struct CollectionEntry {
+  double time;  ///< s
+  int part;     ///< 0 pores, 1 grains
+  std::string file;
+};
+void write_collection(const std::string& path, const std::vector<CollectionEntry>& entries);
+
+/// Throws InputError unless the folder that is to hold `path` exists and is writable: called before
+/// any work is done.
+void require_folder_of(const std::string& path);
+
+}  // namespace pfv

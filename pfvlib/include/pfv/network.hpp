@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace pfv {
+
+/// A vertex of a tetrahedron: k >= 0 is sphere k, -1 ... -6 are the walls xlo ... zhi.
+using Vertex = int;
+inline bool is_wall(Vertex vertex) { return vertex < 0; }
+inline int wall_number(Vertex vertex) { return -1 - vertex; }
+inline Vertex wall_vertex(int face) { return -1 - face; }
+
+/// The pore space as a graph (Chareyre et al. 2012, sec. 2): plain arrays, indices only.
+///
+/// A *cell* is a tetrahedron of the regular triangulation; with walls among its vertices it is a prism
+/// on a face, a slab on an edge or a block in a corner of the box. A *pore* is a cell, or several cells
+/// that share one dual vertex (cospherical sets: they hold one pressure). A *facet* is shared by two
+/// cells; a *throat* is the planar polygon between two pores: one facet, or several pieces of it.
+struct PoreNetwork {
+  // one entry a cell
+  std::vector<std::array<Vertex, 4>> cell_vertices;  ///< positively oriented
+  std::vector<std::array<int, 4>> cell_neighbours;   ///< opposite each vertex; -1 outside the box
+  Eigen::Matrix3Xd cell_centres;                     ///< dual vertex: equal power to its vertices, m
+  std::vector<int> cell_pore;
+
+  // one entry a pore
+  Eigen::Matrix3Xd pore_centres;        ///< m
+  std::vector<std::uint8_t> pore_faces;  ///< bit f is set when the pore touches face f
+
+  // one entry a facet; the facets of throat t are [throat_facets[t], throat_facets[t + 1]), those
+  // inside merged pores come after the last throat
+  std::vector<std::array<Vertex, 3>> facet_vertices;  ///< spheres first; normal by the right-hand
+                                                      ///< rule points from cell 0 to cell 1
+  std::vector<std::array<int, 2>> facet_cells;
+
+  // one entry a throat (throat_facets has one more)
+  std::vector<std::array<int, 2>> throat_pores;
+  std::vector<int> throat_facets;
+
+  std::vector<int> hidden;  ///< spheres whose power cell is empty: no vertices of any cell
+
+  int cells() const { return static_cast<int>(cell_vertices.size()); }
+  int pores() const { return static_cast<int>(pore_faces.size()); }
+  int facets() const { return static_cast<int>(facet_vertices.size()); }
+  int throats() const { return static_cast<int>(throat_pores.size()); }
+};
+
+}  // namespace pfv

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+namespace pfv {
+
+/// Conductance of a throat. `hydraulic_radius`: Chareyre et al. 2012 eqs. 7-9 with alpha = 1/2.
+/// `effective_radius`: eq. 10.
+enum class ConductanceLaw { hydraulic_radius, effective_radius };
+
+/// Direct solvers, all behind Amesos2. `automatic` is cholmod; klu2 is the plain reference.
+enum class SolverKind { automatic, cholmod, klu2 };
+
+/// Fill-reducing ordering. `automatic` is metis; klu2 has its own (amd) and refuses another.
+enum class OrderingKind { automatic, metis, amd };
+
+/// What to do with a grain whose centre is not inside the flow box.
+enum class OutsideGrains { refuse, leave_out };
+
+struct Options {
+  ConductanceLaw conductance = ConductanceLaw::hydraulic_radius;
+  SolverKind solver = SolverKind::automatic;
+  OrderingKind ordering = OrderingKind::automatic;
+  OutsideGrains outside = OutsideGrains::refuse;
+  /// Accumulated pore strain at which `Flow::step` triangulates anew (thesis eqs. 5.13-5.14), > 0.
+  double retriangulation_strain = 0.01;
+  bool forces = true;         ///< false: no force matrix is built, `Forces` stays empty
+  bool split_forces = false;  ///< also the pressure and the viscous part of each sphere's force
+  bool buoyancy = true;       ///< add -density V gravity to each sphere where there is gravity
+  bool sphere_pressure = false;  ///< also the mean pressure around each sphere
+};
+
+/// Throws InputError for settings that are unknown or contradict each other.
+void check(const Options& options);
+
+/// The name that the command line and the fix use, and back (InputError for an unknown one, with the
+/// list of those that exist).
+const char* name_of(ConductanceLaw law);
+const char* name_of(SolverKind solver);
+const char* name_of(OrderingKind ordering);
+ConductanceLaw conductance_law_named(const std::string& name);
+SolverKind solver_named(const std::string& name);
+OrderingKind ordering_named(const std::string& name);
+
+}  // namespace pfv

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace pfv {
+
+/// Non-owning view of the grains at one instant.
+///
+/// Column k of `positions` and `velocities` and entry k of `ids` and `radii` belong to one sphere.
+/// A row-major N x 3 array (LIGGGHTS' own x and v) maps onto it without a copy.
+///
+/// | member     | shape | unit | meaning                                              |
+/// |------------|-------|------|------------------------------------------------------|
+/// | ids        | N     | -    | unique; every error message names spheres by id       |
+/// | positions  | 3 x N | m    | centres                                              |
+/// | radii      | N     | m    | > 0                                                  |
+/// | velocities | 3 x N | m/s  | empty (3 x 0): the grains are at rest and no volume  |
+/// |            |       |      | rate is computed                                     |
+struct Packing {
+  using Ids = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
+
+  Eigen::Map<const Ids> ids{nullptr, 0};
+  Eigen::Map<const Eigen::Matrix3Xd> positions{nullptr, 3, 0};
+  Eigen::Map<const Eigen::VectorXd> radii{nullptr, 0};
+  Eigen::Map<const Eigen::Matrix3Xd> velocities{nullptr, 3, 0};
+
+  Eigen::Index size() const { return ids.size(); }
+};
+
+/// Owner of the arrays that a `Packing` looks at: what file readers return.
+/// The view is valid as long as the arrays are neither resized nor destroyed.
+struct PackingArrays {
+  Packing::Ids ids;
+  Eigen::Matrix3Xd positions;
+  Eigen::VectorXd radii;
+  Eigen::Matrix3Xd velocities = Eigen::Matrix3Xd(3, 0);
+
+  Packing view() const {
+    return {{ids.data(), ids.size()},
+            {positions.data(), 3, positions.cols()},
+            {radii.data(), radii.size()},
+            {velocities.data(), 3, velocities.cols()}};
+  }
+};
+
+}  // namespace pfv

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/box.hpp"
+#include "pfv/error.hpp"
+#include "pfv/flow.hpp"
+#include "pfv/fluid.hpp"
+#include "pfv/io.hpp"
+#include "pfv/network.hpp"
+#include "pfv/options.hpp"
+#include "pfv/packing.hpp"
+#include "pfv/report.hpp"
+#include "pfv/version.hpp"

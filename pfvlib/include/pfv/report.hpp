@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace pfv {
+
+/// What crosses a face and pushes on it.
+struct FaceResult {
+  double flux = 0.0;                                          ///< m³/s, positive INTO the box
+  Eigen::Vector3d force_pressure = Eigen::Vector3d::Zero();   ///< N, of the fluid on the face
+  Eigen::Vector3d force_viscous = Eigen::Vector3d::Zero();    ///< N, of the fluid on the face
+};
+
+/// How often each piece of work was done since the Flow was made: a scene pays for nothing else.
+struct Counts {
+  std::int64_t triangulate = 0, order = 0, factor = 0, solve = 0, force_matrix = 0, volume_rate = 0;
+  /// Of the present network: throats whose law needed the rule for phi <= 0, gamma <= 0 or A_f <= 0;
+  /// tetrahedra that were merged into another pore; pores at rest without any way to a pressure.
+  std::int64_t degenerate_throats = 0, merged_pores = 0, pinned_pores = 0;
+};
+
+/// CPU seconds of the process, all threads, summed over the life of the Flow.
+struct Seconds {
+  double read = 0, triangulate = 0, throats = 0, assemble = 0, order = 0, factor = 0, solve = 0,
+         forces = 0, total = 0;
+  std::optional<double> step;  ///< median of the repeated steps
+};
+
+struct WallSeconds {
+  double total = 0;
+  std::optional<double> step;
+};
+
+/// What was done, how long it took and how well it balances; written as JSON by `write_report`
+/// with these names (doc/conventions.md holds units and signs). Absent values mean "has no meaning".
+struct Report {
+  std::int64_t spheres = 0, hidden = 0, outside = 0, pores = 0, unknowns = 0;
+  double porosity = 0, pore_volume = 0, solid_area = 0;
+  double inflow = 0, outflow = 0, volume_rate_sum = 0, storage_rate = 0;
+  double mass_error = 0;
+  std::optional<double> permeability;
+  Eigen::Vector3d force_sum = Eigen::Vector3d::Zero();
+  double force_balance_error = 0;
+  double residual = 0;
+  std::string solver, ordering, conductance;
+  std::array<FaceResult, 6> faces;
+  Counts counts;
+  Seconds seconds;
+  WallSeconds wall_seconds;
+  int threads = 1;
+  std::int64_t peak_memory_bytes = 0;
+};
+
+}  // namespace pfv
