@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/number_text.hpp"
+#include "pfv/box.hpp"
+#include "pfv/error.hpp"
+#include "pfv/fluid.hpp"
+#include "pfv/options.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace pfv {
+namespace {
+
+using detail::number_text;
+
+constexpr std::array<const char*, 6> face_names{"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+
+template <class Value>
+using Named = std::pair<Value, const char*>;
+
+constexpr std::array<Named<ConductanceLaw>, 2> conductance_laws{
+    {{ConductanceLaw::hydraulic_radius, "hydraulic_radius"},
+     {ConductanceLaw::effective_radius, "effective_radius"}}};
+constexpr std::array<Named<SolverKind>, 3> solvers{{{SolverKind::automatic, "auto"},
+                                                    {SolverKind::cholmod, "cholmod"},
+                                                    {SolverKind::klu2, "klu2"}}};
+constexpr std::array<Named<OrderingKind>, 3> orderings{{{OrderingKind::automatic, "auto"},
+                                                        {OrderingKind::metis, "metis"},
+                                                        {OrderingKind::amd, "amd"}}};
+
+template <class Value, std::size_t N>
+const char* name_in(const std::array<Named<Value>, N>& table, Value value, const char* what) {
+  for (const auto& [candidate, name] : table)
+    if (candidate == value) return name;
+  throw InputError(std::string("unknown ") + what + " number " +
+                   std::to_string(static_cast<int>(value)) + ": use one that options.hpp names");
+}
+
+template <class Value, std::size_t N>
+Value value_in(const std::array<Named<Value>, N>& table, const std::string& wanted,
+               const char* what) {
+  std::string known;
+  for (const auto& [value, name] : table) {
+    if (wanted == name) return value;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  throw InputError(std::string("unknown ") + what + " '" + wanted + "': use one of " + known);
+}
+
+void require_finite(double value, const std::string& what) {
+  if (!std::isfinite(value))
+    throw InputError(what + " is " + number_text(value) + ": give a finite number");
+}
+
+void require_positive(double value, const std::string& what) {
+  if (!std::isfinite(value) || value <= 0)
+    throw InputError(what + " is " + number_text(value) + ": give a finite number > 0");
+}
+
+std::string interval(double lower, double upper) {
+  return "[" + number_text(lower) + ", " + number_text(upper) + "]";
+}
+
+void check_edge(const Box& box, int axis) {
+  const double lower = box.lower[axis], upper = box.upper[axis];
+  const std::string where = std::string("box along ") + axis_names[axis];
+  require_finite(lower, where + ": lower bound");
+  require_finite(upper, where + ": upper bound");
+  require_finite(upper - lower, where + ": length");
+  if (upper <= lower)
+    throw InputError(where + " is " + interval(lower, upper) +
+                     ", flat or inverted: give the lower bound first");
+}
+
+void check(const Boundary& boundary, const std::string& where) {
+  switch (boundary.kind) {
+    case Boundary::Kind::sealed: return;
+    case Boundary::Kind::pressure: require_finite(boundary.value, where + ": pressure"); return;
+    case Boundary::Kind::flux: require_finite(boundary.value, where + ": flux"); return;
+  }
+  throw InputError(where + ": unknown kind of boundary: use sealed, pressure or flux");
+}
+
+// A rectangle may reach beyond its face, since faces move: the part on the face counts.
+void check_extent(const Box& box, const Patch& patch, int axis, int first,
+                  const std::string& where) {
+  const double from = patch.rectangle[first], to = patch.rectangle[first + 1];
+  const std::string along = where + " along " + axis_names[axis];
+  require_finite(from, along + ": lower bound");
+  require_finite(to, along + ": upper bound");
+  if (to <= from)
+    throw InputError(along + " is " + interval(from, to) +
+                     ", flat or inverted: give the lower bound first");
+  if (to <= box.lower[axis] || from >= box.upper[axis])
+    throw InputError(along + " is " + interval(from, to) + ", outside its face " +
+                     interval(box.lower[axis], box.upper[axis]) + ": move it onto the face");
+}
+
+void check_patch(const Box& box, std::size_t number) {
+  const Patch& patch = box.patches[number];
+  const std::string where =
+      "patch " + std::to_string(number + 1) + " on face " + name_of(patch.face);
+  const int axis = axis_of(patch.face);
+  check_extent(box, patch, axis == 0 ? 1 : 0, 0, where);
+  check_extent(box, patch, axis == 2 ? 1 : 2, 2, where);
+  check(patch.boundary, where);
+}
+
+}  // namespace
+
+const char* name_of(Face face) {
+  const auto number = static_cast<std::size_t>(face);
+  if (number >= face_names.size())
+    throw InputError("unknown face number " + std::to_string(number) + ": use xlo ... zhi");
+  return face_names[number];
+}
+
+Face face_named(const std::string& name) {
+  for (const Face face : all_faces)
+    if (name == name_of(face)) return face;
+  throw InputError("unknown face '" + name + "': use one of xlo, xhi, ylo, yhi, zlo, zhi");
+}
+
+const char* name_of(ConductanceLaw law) {
+  return name_in(conductance_laws, law, "conductance law");
+}
+const char* name_of(SolverKind solver) { return name_in(solvers, solver, "solver"); }
+const char* name_of(OrderingKind ordering) { return name_in(orderings, ordering, "ordering"); }
+
+ConductanceLaw conductance_law_named(const std::string& name) {
+  return value_in(conductance_laws, name, "conductance law");
+}
+SolverKind solver_named(const std::string& name) { return value_in(solvers, name, "solver"); }
+OrderingKind ordering_named(const std::string& name) {
+  return value_in(orderings, name, "ordering");
+}
+
+void check(const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) check_edge(box, axis);
+  for (const Face face : all_faces) {
+    const std::string where = std::string("face ") + name_of(face);
+    require_finite(box[face].velocity, where + ": velocity");
+    check(box[face].boundary, where);
+  }
+  for (std::size_t number = 0; number < box.patches.size(); ++number) check_patch(box, number);
+}
+
+void check(const Fluid& fluid) {
+  require_positive(fluid.viscosity, "viscosity");
+  if (!std::isfinite(fluid.density) || fluid.density < 0)
+    throw InputError("density is " + number_text(fluid.density) +
+                     ": give a finite number >= 0");
+  for (int axis = 0; axis < 3; ++axis)
+    require_finite(fluid.gravity[axis], std::string("gravity along ") + axis_names[axis]);
+  if (fluid.bulk_modulus) require_positive(*fluid.bulk_modulus, "bulk modulus");
+}
+
+void check(const Options& options) {
+  name_of(options.conductance);
+  name_of(options.solver);
+  name_of(options.ordering);
+  if (options.outside != OutsideGrains::refuse && options.outside != OutsideGrains::leave_out)
+    throw InputError("unknown rule for grains outside the box: use refuse or leave_out");
+  if (!(options.retriangulation_strain > 0))  // infinite: never, as far as strain goes
+    throw InputError("retriangulation strain is " + number_text(options.retriangulation_strain) +
+                     ": give a number > 0");
+  if (options.solver == SolverKind::klu2 && options.ordering == OrderingKind::metis)
+    throw InputError("solver klu2 orders with amd: leave out ordering metis or use cholmod");
+  if (!options.forces && (options.split_forces || options.sphere_pressure))
+    throw InputError("split forces and sphere pressures need forces: switch those on too");
+}
+
+}  // namespace pfv

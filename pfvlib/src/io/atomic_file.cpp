@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/atomic_file.hpp"
+
+#include "pfv/error.hpp"
+#include "pfv/io.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace pfv {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const std::string& path, int error) {
+  throw FileError("cannot write " + path + ": " + std::strerror(error) +
+                  ": free space or choose another place");
+}
+
+int write_all(int file, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(file, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+/// Opens, writes and closes; returns the first error number or 0.
+int fill(const std::string& path, int flags, std::string_view content) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
+  if (file < 0) return errno;
+  const int write_error = write_all(file, content);
+  // A network disk may report that it is full only here.
+  const int close_error = ::close(file) == 0 ? 0 : errno;
+  return write_error ? write_error : close_error;
+}
+
+bool is_device(const std::string& path) {
+  struct stat status;
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) &&
+         !S_ISDIR(status.st_mode);
+}
+
+fs::path folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? fs::path(".") : folder;
+}
+
+/// Follows a symbolic link, so that renaming replaces the file and not the link.
+std::string target_of(const std::string& path) {
+  std::error_code none;
+  const fs::path target = fs::canonical(path, none);
+  return none ? path : target.string();
+}
+
+std::string temporary_beside(const std::string& path) {
+  static std::atomic<unsigned> counter{0};
+  const std::string name =
+      ".pfv-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".part";
+  return (folder_of(path) / name).string();
+}
+
+}  // namespace
+
+void detail::write_file(const std::string& path, std::string_view content) {
+  if (is_device(path)) {
+    if (const int error = fill(path, 0, content)) fail(path, error);
+    return;
+  }
+  const std::string target = target_of(path);
+  const std::string temporary = temporary_beside(target);
+  int error = fill(temporary, O_CREAT | O_EXCL, content);
+  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+  if (error != 0) {
+    if (error != EEXIST) ::unlink(temporary.c_str());
+    fail(path, error);
+  }
+}
+
+void require_folder_of(const std::string& path) {
+  if (path.empty()) throw InputError("an output file has no name: give one");
+  if (is_device(path)) return;
+  std::error_code none;
+  if (fs::is_directory(path, none) || path.back() == '/')
+    throw InputError("output " + path + " is a folder: give the name of a file in it");
+  const fs::path folder = folder_of(path);
+  if (!fs::is_directory(folder, none))
+    throw InputError("output folder " + folder.string() + " is not there: make it first");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError("output folder " + folder.string() +
+                     " cannot be written: choose another one");
+}
+
+}  // namespace pfv
