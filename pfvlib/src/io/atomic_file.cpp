@@ -9,7 +9,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace pfv {
@@ -42,12 +41,6 @@ int fill(const std::string& path, int flags, std::string_view content) {
   return write_error ? write_error : close_error;
 }
 
-bool is_device(const std::string& path) {
-  struct stat status;
-  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) &&
-         !S_ISDIR(status.st_mode);
-}
-
 fs::path folder_of(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? fs::path(".") : folder;
@@ -69,9 +62,21 @@ std::string temporary_beside(const std::string& path) {
 
 }  // namespace
 
+bool detail::is_standard_output(const std::string& path) {
+  std::error_code none;
+  return fs::equivalent(path, "/dev/stdout", none);
+}
+
+bool detail::is_stream(const std::string& path) {
+  std::error_code none;
+  const fs::file_status status = fs::status(path, none);
+  return fs::is_other(status) || is_standard_output(path) ||
+         fs::equivalent(path, "/dev/stderr", none);
+}
+
 void detail::write_file(const std::string& path, std::string_view content) {
-  if (is_device(path)) {
-    if (const int error = fill(path, 0, content)) fail(path, error);
+  if (is_stream(path)) {
+    if (const int error = fill(path, O_APPEND, content)) fail(path, error);
     return;
   }
   const std::string target = target_of(path);
@@ -86,7 +91,7 @@ void detail::write_file(const std::string& path, std::string_view content) {
 
 void require_folder_of(const std::string& path) {
   if (path.empty()) throw InputError("an output file has no name: give one");
-  if (is_device(path)) return;
+  if (detail::is_stream(path)) return;
   std::error_code none;
   if (fs::is_directory(path, none) || path.back() == '/')
     throw InputError("output " + path + " is a folder: give the name of a file in it");

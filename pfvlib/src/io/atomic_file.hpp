@@ -6,9 +6,13 @@
 
 namespace pfv::detail {
 
+/// Whether `path` cannot be replaced by another file: a device, a pipe, or the very file that
+/// standard output or standard error goes to (/dev/stdout).
+bool is_stream(const std::string& path);
+bool is_standard_output(const std::string& path);
+
 /// Makes the file at `path` hold exactly `content`, or leaves it as it was: writes to a temporary
-/// file in the same folder and renames that. Devices and pipes are written straight to.
-/// Throws FileError.
+/// file in the same folder and renames that. A stream is written straight to. Throws FileError.
 void write_file(const std::string& path, std::string_view content);
 
 }  // namespace pfv::detail

@@ -28,8 +28,8 @@ class VtuFile {
   VtuFile(std::int64_t points, std::int64_t cells) {
     constexpr std::uint16_t one = 1;
     const bool little = *reinterpret_cast<const unsigned char*>(&one) == 1;
-    head_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" +
-            std::string(little ? "LittleEndian" : "BigEndian") +
+    head_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\""
+            " byte_order=\"" + std::string(little ? "LittleEndian" : "BigEndian") +
             "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
             std::to_string(points) + "\" NumberOfCells=\"" + std::to_string(cells) + "\">\n";
   }

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "face_arguments.hpp"
+
+#include "io/number_text.hpp"
+#include "io/text_lines.hpp"
+#include "pfv/error.hpp"
+
+#include <array>
+#include <optional>
+#include <set>
+#include <string_view>
+
+namespace pfv::app {
+namespace {
+
+using detail::quoted;
+
+constexpr const char* face_items = "pressure=P, flux=Q, sealed, wall=no_slip|symmetry, velocity=V";
+
+[[noreturn]] void fail(const std::string& where, const std::string& what) {
+  throw InputError(where + ": " + what);
+}
+
+std::vector<std::string> parts(const std::string& text, char separator) {
+  std::vector<std::string_view> views;
+  detail::split(text, separator, views);
+  return {views.begin(), views.end()};
+}
+
+/// KEY or KEY=VALUE.
+struct Item {
+  std::string key;
+  std::optional<std::string> value;
+};
+
+Item item_of(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return {text, std::nullopt};
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+const std::string& value_of(const std::string& where, const Item& item) {
+  if (!item.value) fail(where, item.key + " needs a value: write " + item.key + "=VALUE");
+  return *item.value;
+}
+
+/// The boundary that an item names, or nothing when it is about something else.
+std::optional<Boundary> boundary_of(const std::string& where, const Item& item) {
+  if (item.key == "pressure") return Boundary::pressure(number(where, value_of(where, item)));
+  if (item.key == "flux") return Boundary::flux(number(where, value_of(where, item)));
+  if (item.key != "sealed") return std::nullopt;
+  if (item.value) fail(where, "sealed takes no value: write sealed");
+  return Boundary::sealed();
+}
+
+/// Collects the items of one face, which may come in several arguments.
+class FaceItems {
+ public:
+  explicit FaceItems(FaceCondition& face) : face_(face) {}
+
+  void take(const std::string& where, const Item& item) {
+    if (const auto boundary = boundary_of(where, item)) {
+      claim(where, "boundary", item);
+      face_.boundary = *boundary;
+    } else if (item.key == "wall") {
+      claim(where, "wall", item);
+      face_.wall = wall_named(where, value_of(where, item));
+    } else if (item.key == "velocity") {
+      claim(where, "velocity", item);
+      face_.velocity = number(where, value_of(where, item));
+    } else {
+      fail(where, "unknown item " + quoted(item.key) + ": use " + face_items);
+    }
+  }
+
+ private:
+  void claim(const std::string& where, const std::string& subject, const Item& item) {
+    if (!claimed_.insert(subject).second)
+      fail(where, item.key + " contradicts or repeats an earlier item of this face: give one " +
+                      (subject == "boundary" ? "of pressure, flux and sealed" : subject));
+  }
+
+  FaceCondition& face_;
+  std::set<std::string> claimed_;
+};
+
+Face face_of(const std::string& where, const std::string& name) {
+  try {
+    return face_named(name);
+  } catch (const InputError& error) {
+    fail(where, error.what());
+  }
+}
+
+Patch patch_of(const std::string& argument) {
+  const std::string where = "--patch " + quoted(argument);
+  const std::vector<std::string> fields = parts(argument, ':');
+  if (fields.size() != 3) fail(where, "write NAME:A0,A1,B0,B1:ITEM");
+  const std::vector<std::string> rectangle = parts(fields[1], ',');
+  if (rectangle.size() != 4) fail(where, "a rectangle has four numbers: write A0,A1,B0,B1");
+  Patch patch;
+  patch.face = face_of(where, fields[0]);
+  for (std::size_t k = 0; k < rectangle.size(); ++k)
+    patch.rectangle[k] = number(where, rectangle[k]);
+  const auto boundary = boundary_of(where, item_of(fields[2]));
+  if (!boundary)
+    fail(where, "unknown item " + quoted(fields[2]) + ": use pressure=P, flux=Q or sealed");
+  patch.boundary = *boundary;
+  return patch;
+}
+
+}  // namespace
+
+double number(const std::string& option, const std::string& text) {
+  const auto value = detail::finite_number(detail::trimmed(text));
+  if (!value) fail(option, quoted(text) + " is no finite number: give one such as -1 or 2.5e-3");
+  return *value;
+}
+
+Wall wall_named(const std::string& option, const std::string& name) {
+  if (name == "no_slip") return Wall::no_slip;
+  if (name == "symmetry") return Wall::symmetry;
+  fail(option, "unknown wall " + quoted(name) + ": use no_slip or symmetry");
+}
+
+void apply_faces(const std::vector<std::string>& arguments, Wall wall, Box& box) {
+  std::vector<FaceItems> faces;
+  for (FaceCondition& face : box.faces) {
+    face.wall = wall;
+    faces.emplace_back(face);
+  }
+  for (const std::string& argument : arguments) {
+    const std::string where = "--face " + quoted(argument);
+    const std::size_t colon = argument.find(':');
+    if (colon == std::string::npos)
+      fail(where, std::string("no items: write NAME:ITEM[,ITEM]... with items ") + face_items);
+    const Face face = face_of(where, argument.substr(0, colon));
+    for (const std::string& item : parts(argument.substr(colon + 1), ','))
+      faces[static_cast<std::size_t>(face)].take(where, item_of(item));
+  }
+}
+
+void apply_patches(const std::vector<std::string>& arguments, Box& box) {
+  for (const std::string& argument : arguments) box.patches.push_back(patch_of(argument));
+}
+
+}  // namespace pfv::app

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/box.hpp"
+
+#include <string>
+#include <vector>
+
+namespace pfv::app {
+
+/// The whole of `text` as a finite number; throws InputError that names `option`.
+double number(const std::string& option, const std::string& text);
+
+/// no_slip or symmetry; throws InputError that names `option`.
+Wall wall_named(const std::string& option, const std::string& name);
+
+/// Applies every `--face NAME:ITEM[,ITEM]...` to `box`. A face without a wall= of its own gets
+/// `wall`. Throws InputError for an unknown, repeated or contradictory item.
+void apply_faces(const std::vector<std::string>& arguments, Wall wall, Box& box);
+
+/// Appends every `--patch NAME:A0,A1,B0,B1:ITEM` to the patches of `box`.
+void apply_patches(const std::vector<std::string>& arguments, Box& box);
+
+}  // namespace pfv::app

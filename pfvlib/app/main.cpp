@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pfv/error.hpp"
+#include "pfv/version.hpp"
+#include "solve_arguments.hpp"
+#include "solve_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <new>
+#include <string>
+
+namespace {
+
+constexpr int succeeded = 0, failed = 1, bad_input = 2;
+
+/// One line on standard error, whatever the message holds.
+int complain(int status, std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  std::cerr << "pfv: " << message << '\n';
+  return status;
+}
+
+int run(int argc, char** argv) {
+  const std::string version_line = std::string("pfv ") + pfv::version;
+  CLI::App app("Flow through the pores of a sphere packing by pore-scale finite volumes (PFV)",
+               "pfv");
+  app.set_version_flag("--version", version_line);
+  app.require_subcommand(1);
+
+  pfv::app::SolveArguments arguments;
+  CLI::App* solve = app.add_subcommand("solve", "pressures, fluxes and forces of one packing");
+  solve->set_version_flag("--version", version_line);
+  pfv::app::add_solve_options(*solve, arguments);
+  solve->footer(
+      "Example: permeability along z\n"
+      "  pfv solve --packing grains.csv --box 0 1 0 1 0 1 --face zlo:pressure=0\n"
+      "            --face zhi:pressure=1 --wall symmetry --report report.json\n"
+      "Exit status: 0; 2 bad input; 1 any other failure (solver, disk).");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {  // help or version
+    return app.exit(request, std::cout, std::cerr);
+  } catch (const CLI::ParseError& error) {
+    const std::string command = app.get_subcommands().empty() ? "pfv" : "pfv solve";
+    return complain(bad_input, error.what() + (": see " + command + " --help"));
+  }
+  pfv::app::solve(pfv::app::request_of(arguments), std::cout, std::cerr);
+  return succeeded;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const int status = run(argc, argv);
+    if (!std::cout.flush()) return complain(failed, "cannot write to standard output");
+    return status;
+  } catch (const pfv::InputError& error) {
+    return complain(bad_input, error.what());
+  } catch (const std::bad_alloc&) {
+    return complain(failed, "not enough memory: use fewer spheres or another machine");
+  } catch (const std::exception& error) {
+    return complain(failed, error.what());
+  }
+}

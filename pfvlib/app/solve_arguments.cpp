@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve_arguments.hpp"
+
+#include "face_arguments.hpp"
+#include "io/atomic_file.hpp"
+#include "io/number_text.hpp"
+#include "io/text_lines.hpp"
+#include "pfv/error.hpp"
+#include "pfv/io.hpp"
+
+#include <filesystem>
+#include <limits>
+
+namespace pfv::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+double positive(const std::string& option, const std::string& text) {
+  const double value = number(option, text);
+  if (value <= 0) throw InputError(option + ": " + text + " is not > 0: give a positive number");
+  return value;
+}
+
+Box box_of(const SolveArguments& arguments) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = number("--box", arguments.box[2 * axis]);
+    box.upper[axis] = number("--box", arguments.box[2 * axis + 1]);
+  }
+  apply_faces(arguments.faces, wall_named("--wall", arguments.wall), box);
+  apply_patches(arguments.patches, box);
+  check(box);
+  return box;
+}
+
+Fluid fluid_of(const SolveArguments& arguments) {
+  Fluid fluid;
+  fluid.viscosity = positive("--viscosity", arguments.viscosity);
+  fluid.density = number("--density", arguments.density);
+  for (std::size_t axis = 0; axis < arguments.gravity.size(); ++axis)
+    fluid.gravity[static_cast<int>(axis)] = number("--gravity", arguments.gravity[axis]);
+  if (arguments.bulk_modulus) {
+    fluid.bulk_modulus = positive("--bulk-modulus", *arguments.bulk_modulus);
+    if (!arguments.time_step)
+      throw InputError("--bulk-modulus: a compressible fluid needs a time step: give --time-step");
+  }
+  check(fluid);
+  return fluid;
+}
+
+Options options_of(const SolveArguments& arguments) {
+  Options options;
+  options.conductance = conductance_law_named(arguments.conductance);
+  options.solver = solver_named(arguments.solver);
+  options.ordering = ordering_named(arguments.ordering);
+  // Only what an output shows is computed: the report holds the sum of the forces.
+  options.forces = arguments.forces || arguments.report;
+  options.split_forces = arguments.forces.has_value();
+  check(options);
+  return options;
+}
+
+int repeats_of(const SolveArguments& arguments) {
+  if (!arguments.repeat) return 0;
+  const auto repeats = detail::integer(*arguments.repeat);
+  if (!repeats || *repeats < 1 || *repeats > std::numeric_limits<int>::max())
+    throw InputError("--repeat: " + detail::quoted(*arguments.repeat) +
+                     " is no number of steps: give a whole number >= 1");
+  return static_cast<int>(*repeats);
+}
+
+bool same_file(const std::string& one, const std::string& other) {
+  if (detail::is_stream(one)) return false;  // /dev/null may be named twice
+  std::error_code none;
+  return fs::weakly_canonical(one, none) == fs::weakly_canonical(other, none);
+}
+
+/// One output must neither replace another nor the packing.
+void check_outputs(const SolveRequest& request) {
+  std::vector<std::string> taken{request.packing};
+  for (const auto& output : {request.forces, request.report, request.vtk}) {
+    if (!output) continue;
+    require_folder_of(*output);
+    for (const std::string& other : taken)
+      if (same_file(*output, other))
+        throw InputError("output " + *output + " would replace " + other +
+                         ": give each file a name of its own");
+    taken.push_back(*output);
+  }
+}
+
+CLI::Option* repeatable(CLI::Option* option) {
+  return option->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_flow_options(CLI::App& command, SolveArguments& arguments) {
+  const std::string group = "Flow problem (SI units; a face not named is sealed)";
+  command.add_option("--packing", arguments.packing,
+                     "spheres (m, m/s): CSV with header id,x,y,z,radius[,vx,vy,vz],\n"
+                     "or a LIGGGHTS dump, of which the last snapshot is taken")
+      ->required()->option_text("FILE (required)")->group(group);
+  command.add_option("--box", arguments.box, "flow box, m")
+      ->type_size(6)->expected(1)->required()
+      ->option_text("XLO XHI YLO YHI ZLO ZHI (required)")->group(group);
+  repeatable(command.add_option("--face", arguments.faces,
+                     "condition on a face, may be given several times\n"
+                                "NAME  xlo | xhi | ylo | yhi | zlo | zhi\n"
+                                "ITEM  pressure=P (Pa) | flux=Q (m3/s, positive into the box) |\n"
+                                "      sealed | wall=no_slip|symmetry |\n"
+                                "      velocity=V (m/s, positive along +axis)\n"
+                                "(default: sealed, at rest)"))
+      ->option_text("NAME:ITEM[,ITEM]...")->group(group);
+  repeatable(command.add_option("--patch", arguments.patches,
+                     "rectangle on a face, may be given several times: its extent (m)\n"
+                                "along the two other axes in the order x y z, and one of\n"
+                                "pressure=P (Pa) | flux=Q (m3/s) | sealed (default: none)"))
+      ->option_text("NAME:A0,A1,B0,B1:ITEM")->group(group);
+  command.add_option("--wall", arguments.wall,
+                     "wall type of every face without wall= of its own (default no_slip)")
+      ->option_text("no_slip|symmetry")->group(group);
+}
+
+void add_fluid_options(CLI::App& command, SolveArguments& arguments) {
+  const std::string group = "Fluid";
+  command.add_option("--viscosity", arguments.viscosity, "dynamic viscosity, Pa s (default 1e-3)")
+      ->option_text("MU")->group(group);
+  command.add_option("--density", arguments.density,
+                     "density, kg/m3, used with gravity only (default 1000)")
+      ->option_text("RHO")->group(group);
+  command.add_option("--gravity", arguments.gravity,
+                     "gravity, m/s2; adds buoyancy to the forces (default 0 0 0)")
+      ->type_size(3)->expected(1)->option_text("GX GY GZ")->group(group);
+  command.add_option("--bulk-modulus", arguments.bulk_modulus,
+                     "bulk modulus, Pa; needs --time-step (default: incompressible)")
+      ->option_text("KF")->group(group);
+  command.add_option("--time-step", arguments.time_step,
+                     "time step of a compressible fluid, s (default: none)")
+      ->option_text("DT")->group(group);
+}
+
+void add_method_options(CLI::App& command, SolveArguments& arguments) {
+  const std::string group = "Method";
+  const Options defaults;
+  arguments.conductance = name_of(defaults.conductance);
+  arguments.solver = name_of(defaults.solver);
+  arguments.ordering = name_of(defaults.ordering);
+  command.add_option("--conductance", arguments.conductance,
+                     "conductance law of a throat (default " + arguments.conductance + ")")
+      ->option_text("hydraulic_radius|effective_radius")->group(group);
+  command.add_option("--solver", arguments.solver,
+                     "linear solver (default " + arguments.solver + ": cholmod)")
+      ->option_text("auto|cholmod|klu2")->group(group);
+  command.add_option("--ordering", arguments.ordering,
+                     "fill-reducing ordering (default " + arguments.ordering +
+                     ": metis; klu2 has amd only)")
+      ->option_text("auto|metis|amd")->group(group);
+  command.add_option("--repeat", arguments.repeat,
+                     "further steps on the kept network, for timing, >= 1 (default: 0)")
+      ->option_text("K")->group(group);
+}
+
+void add_output_options(CLI::App& command, SolveArguments& arguments) {
+  const std::string group = "Output (without any: a summary on standard output)";
+  command.add_option("--forces", arguments.forces,
+                     "force on each sphere (N): id, fx,fy,fz (total), fpx,fpy,fpz\n"
+                     "(pressure part with buoyancy), fvx,fvy,fvz (viscous part)\n"
+                     "(default: not written)")
+      ->option_text("FILE.csv")->group(group);
+  command.add_option("--report", arguments.report,
+                     "what was done and how well it balances (default: not written)")
+      ->option_text("FILE.json")->group(group);
+  command.add_option("--vtk", arguments.vtk,
+                     "pores (pressure in Pa, volume in m3) and throats (conductance\n"
+                     "in m3/(Pa s), flux in m3/s) for ParaView (default: not written)")
+      ->option_text("FILE.vtu")->group(group);
+}
+
+}  // namespace
+
+void add_solve_options(CLI::App& command, SolveArguments& arguments) {
+  add_flow_options(command, arguments);
+  add_fluid_options(command, arguments);
+  add_method_options(command, arguments);
+  add_output_options(command, arguments);
+  for (CLI::Option* option : command.get_options())
+    if (!option->get_option_text().empty()) option->type_name("VALUE");  // in parser's messages
+}
+
+SolveRequest request_of(const SolveArguments& arguments) {
+  SolveRequest request;
+  request.packing = arguments.packing;
+  request.box = box_of(arguments);
+  request.fluid = fluid_of(arguments);
+  request.options = options_of(arguments);
+  if (arguments.time_step) request.time_step = positive("--time-step", *arguments.time_step);
+  request.repeat = repeats_of(arguments);
+  request.forces = arguments.forces;
+  request.report = arguments.report;
+  request.vtk = arguments.vtk;
+  check_outputs(request);
+  return request;
+}
+
+}  // namespace pfv::app

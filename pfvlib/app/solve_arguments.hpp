@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/box.hpp"
+#include "pfv/fluid.hpp"
+#include "pfv/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pfv::app {
+
+/// The command line of `pfv solve` as text. Numbers are read by us and not by the parser, which
+/// would take "1abc" and "nan".
+struct SolveArguments {
+  std::string packing;
+  std::vector<std::string> box, faces, patches, gravity;
+  std::string wall = "no_slip", viscosity = "1e-3", density = "1000", conductance, solver, ordering;
+  std::optional<std::string> bulk_modulus, time_step, repeat;
+  std::optional<std::string> forces, report, vtk;
+};
+
+/// What `pfv solve` is to do.
+struct SolveRequest {
+  std::string packing;
+  Box box;
+  Fluid fluid;
+  Options options;
+  double time_step = 0.0;  ///< s; 0: none
+  int repeat = 0;          ///< further steps on the kept network
+  std::optional<std::string> forces, report, vtk;  ///< output files
+};
+
+void add_solve_options(CLI::App& command, SolveArguments& arguments);
+
+/// Throws InputError for whatever can be refused before the packing is read, output folders that
+/// are not there included.
+SolveRequest request_of(const SolveArguments& arguments);
+
+}  // namespace pfv::app

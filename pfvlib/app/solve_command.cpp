@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve_command.hpp"
+
+#include "io/atomic_file.hpp"
+#include "pfv/flow.hpp"
+#include "pfv/io.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <iomanip>
+#include <ostream>
+
+namespace pfv::app {
+namespace {
+
+/// CPU time of the process (all threads) and time on the wall since it was made.
+class Stopwatch {
+ public:
+  double cpu_seconds() const { return cpu_now() - cpu_start_; }
+  double wall_seconds() const {
+    return std::chrono::duration<double>(Clock::now() - wall_start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double cpu_now() {
+    std::timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+
+  double cpu_start_ = cpu_now();
+  Clock::time_point wall_start_ = Clock::now();
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+struct StepTimes {
+  std::optional<double> cpu, wall;
+};
+
+StepTimes repeat_steps(Flow& flow, const Packing& packing, const SolveRequest& request) {
+  if (request.repeat == 0) return {};
+  std::vector<double> cpu, wall;
+  for (int step = 0; step < request.repeat; ++step) {
+    const Stopwatch watch;
+    flow.evaluate(packing, request.time_step);
+    cpu.push_back(watch.cpu_seconds());
+    wall.push_back(watch.wall_seconds());
+  }
+  return {median(cpu), median(wall)};
+}
+
+/// Grains all at rest between faces at rest need no volume rates: the Flow is told so by empty
+/// velocities.
+void settle_velocities(const Box& box, PackingArrays& packing) {
+  const bool faces_move = std::any_of(box.faces.begin(), box.faces.end(),
+                                      [](const FaceCondition& face) { return face.velocity != 0; });
+  if (faces_move && packing.velocities.cols() == 0)
+    packing.velocities = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
+  if (!faces_move && packing.velocities.isZero(0)) packing.velocities.resize(3, 0);
+}
+
+/// Nothing drives the flow and nothing fixes the level of the pressure.
+bool is_unloaded(const SolveRequest& request, const Packing& packing) {
+  if (request.fluid.bulk_modulus || packing.velocities.cols() > 0) return false;
+  const auto idle = [](const Boundary& boundary) {
+    return boundary.kind == Boundary::Kind::sealed ||
+           (boundary.kind == Boundary::Kind::flux && boundary.value == 0);
+  };
+  return std::all_of(request.box.faces.begin(), request.box.faces.end(),
+                     [&](const FaceCondition& face) { return idle(face.boundary); }) &&
+         std::all_of(request.box.patches.begin(), request.box.patches.end(),
+                     [&](const Patch& patch) { return idle(patch.boundary); });
+}
+
+void warn_of_hidden(const Flow& flow, const Packing& packing, std::ostream& warnings) {
+  constexpr std::size_t shown = 5;
+  const std::vector<int>& hidden = flow.network().hidden;
+  if (hidden.empty()) return;
+  warnings << "pfv: warning: " << hidden.size()
+           << " hidden spheres lie inside bigger ones and touch no pore, ids";
+  for (std::size_t k = 0; k < std::min(shown, hidden.size()); ++k)
+    warnings << ' ' << packing.ids[hidden[k]];
+  warnings << (hidden.size() > shown ? " ...\n" : "\n");
+}
+
+void warn(const SolveRequest& request, const Flow& flow, const Packing& packing,
+          const Counts& counts, std::ostream& warnings) {
+  warn_of_hidden(flow, packing, warnings);
+  if (is_unloaded(request, packing))
+    warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
+  else if (counts.pinned_pores > 0)
+    warnings << "pfv: warning: " << counts.pinned_pores
+             << " pores at rest have no way to a pressure: p is 0 there\n";
+  if (counts.degenerate_throats > 0)
+    warnings << "pfv: warning: " << counts.degenerate_throats
+             << " throats without positive volume, surface or area: a rule sets their"
+                " conductance\n";
+}
+
+void write_outputs(const SolveRequest& request, const Flow& flow, const Packing& packing,
+                   const Report& report) {
+  if (request.forces) write_forces(*request.forces, packing, flow.forces());
+  if (request.report) write_report(*request.report, report);
+  if (request.vtk) write_network(*request.vtk, flow);
+}
+
+void write_summary(const SolveRequest& request, const Report& report, std::ostream& out) {
+  // An output on the same stream must stay what its format says.
+  for (const auto& output : {request.forces, request.report, request.vtk})
+    if (output && detail::is_standard_output(*output)) return;
+  out << std::setprecision(6) << report.spheres << " spheres, " << report.pores << " pores, "
+      << report.unknowns << " unknowns, " << report.seconds.total << " s\n";
+  if (report.permeability) out << "permeability " << *report.permeability << " m2, ";
+  out << "inflow " << report.inflow << " m3/s, outflow " << report.outflow << " m3/s\n";
+  if (!request.forces && !request.report && !request.vtk)
+    for (const Face face : all_faces)
+      out << "flux " << name_of(face) << ' '
+          << report.faces[static_cast<std::size_t>(face)].flux << " m3/s\n";
+}
+
+}  // namespace
+
+void solve(const SolveRequest& request, std::ostream& out, std::ostream& warnings) {
+  const Stopwatch reading;
+  PackingArrays arrays = read_packing(request.packing);
+  settle_velocities(request.box, arrays);
+  const double read_seconds = reading.cpu_seconds();
+
+  const Packing packing = arrays.view();
+  Flow flow(request.box, request.fluid, request.options);
+  flow.evaluate(packing, request.time_step);
+  const StepTimes step = repeat_steps(flow, packing, request);
+
+  Report report = flow.report();
+  report.seconds.read = read_seconds;
+  report.seconds.step = step.cpu;
+  report.wall_seconds.step = step.wall;
+  write_outputs(request, flow, packing, report);
+  warn(request, flow, packing, report.counts, warnings);
+  write_summary(request, report, out);
+}
+
+}  // namespace pfv::app
