@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arguments.h"
+
+#include "pfv/error.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <cmath>
+#include <cstdlib>
+
+namespace LAMMPS_NS {
+
+namespace {
+
+using Kind = pfv::Boundary::Kind;
+using Source = PfvFace::Source;
+
+/// Reads the words one after the other; every error names the keyword in whose list it is.
+class Words {
+ public:
+  Words(int narg, char** arg) : words_(arg, arg + narg) {}
+
+  bool done() const { return next_ == words_.size(); }
+  int taken() const { return static_cast<int>(next_); }
+
+  std::string keyword() { return keyword_ = words_[next_++]; }
+
+  bool take(const char* word) {
+    if (done() || words_[next_] != word) return false;
+    ++next_;
+    return true;
+  }
+
+  std::string word(const char* what) {
+    if (done()) fail(std::string(what) + " is missing");
+    return words_[next_++];
+  }
+
+  double number(const char* what) { return to_number(word(what), what); }
+
+  int count(const char* what) {
+    const std::string text = word(what);
+    char* end = nullptr;
+    errno = 0;
+    const long value = std::strtol(text.c_str(), &end, 10);
+    if (end == text.c_str() || *end != '\0' || errno != 0 || value < 1 || value > INT_MAX)
+      fail(std::string(what) + " must be a whole number > 0, not '" + text + "'");
+    return static_cast<int>(value);
+  }
+
+  PfvValue value(const char* what) {
+    const std::string text = word(what);
+    if (text.rfind("v_", 0) == 0) return {0.0, text.substr(2)};
+    return {to_number(text, what), ""};
+  }
+
+  pfv::Face face() { return pfv::face_named(word("the name of a face")); }
+
+  int axis() {
+    const std::string text = word("the axis");
+    if (text.size() != 1 || text[0] < 'x' || text[0] > 'z')
+      fail("the axis must be x, y or z, not '" + text + "'");
+    return text[0] - 'x';
+  }
+
+  bool yes_or_no() {
+    const std::string text = word("yes or no");
+    if (text != "yes" && text != "no") fail("say yes or no, not '" + text + "'");
+    return text == "yes";
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw pfv::InputError("keyword '" + keyword_ + "': " + what);
+  }
+
+ private:
+  double to_number(const std::string& text, const char* what) const {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (end == text.c_str() || *end != '\0' || !std::isfinite(value))
+      fail(std::string(what) + " must be a number, not '" + text + "'");
+    return value;
+  }
+
+  std::vector<std::string> words_;
+  std::size_t next_ = 0;
+  std::string keyword_;
+};
+
+/// `sealed | pressure P | flux Q`, if that comes next.
+std::optional<PfvBoundary> take_boundary(Words& words) {
+  if (words.take("sealed")) return PfvBoundary{};
+  if (words.take("pressure")) return PfvBoundary{Kind::pressure, words.value("the pressure")};
+  if (words.take("flux")) return PfvBoundary{Kind::flux, words.value("the flux")};
+  return std::nullopt;
+}
+
+void take_source(Words& words, PfvFace& face) {
+  if (words.take("plane")) {
+    face.source = Source::plane;
+    face.plane = words.number("the plane's position");
+  } else if (words.take("wall")) {
+    face.source = Source::wall;
+    face.fix_id = words.word("the ID of a fix wall/gran");
+  } else if (words.take("mesh")) {
+    face.source = Source::mesh;
+    face.fix_id = words.word("the ID of a fix mesh/surface");
+  } else if (words.take("extent")) {
+    face.source = Source::extent;
+  } else {
+    words.fail("the face's name must be followed by plane X, wall FIX_ID, mesh FIX_ID or extent");
+  }
+}
+
+std::optional<pfv::Wall> take_wall(Words& words) {
+  if (words.take("no_slip")) return pfv::Wall::no_slip;
+  if (words.take("symmetry")) return pfv::Wall::symmetry;
+  return std::nullopt;
+}
+
+void parse_face(Words& words, PfvSettings& settings) {
+  const pfv::Face name = words.face();
+  PfvFace& face = settings.faces[static_cast<int>(name)];
+  if (face.source != Source::none)
+    words.fail(std::string("face ") + pfv::name_of(name) + " is given twice");
+  take_source(words, face);
+  bool has_wall = false, has_boundary = false;
+  while (true) {
+    if (const auto wall = take_wall(words)) {
+      if (has_wall) words.fail("say either no_slip or symmetry, once");
+      face.wall = *wall;
+      has_wall = true;
+    } else if (const auto boundary = take_boundary(words)) {
+      if (has_boundary) words.fail("say one of sealed, pressure P and flux Q, once");
+      face.boundary = *boundary;
+      has_boundary = true;
+    } else {
+      return;
+    }
+  }
+}
+
+void parse_patch(Words& words, PfvSettings& settings) {
+  PfvPatch patch{};
+  patch.face = words.face();
+  for (double& edge : patch.rectangle) edge = words.number("the rectangle's edge");
+  const auto boundary = take_boundary(words);
+  if (!boundary) words.fail("the rectangle must be followed by sealed, pressure P or flux Q");
+  patch.boundary = *boundary;
+  settings.patches.push_back(patch);
+}
+
+void parse_pressure_profile(Words& words, PfvSettings& settings) {
+  PfvFace& face = settings.faces[static_cast<int>(words.face())];
+  if (!words.take("cosine")) words.fail("the one profile that exists is cosine");
+  PfvCosine cosine;
+  cosine.axis = words.axis();
+  cosine.mean = words.value("the mean pressure");
+  cosine.amplitude = words.value("the amplitude");
+  cosine.half_period = words.number("the half period");
+  if (cosine.half_period <= 0.0) words.fail("the half period must be > 0");
+  face.profile = cosine;
+}
+
+void parse_fields(Words& words, PfvSettings& settings) {
+  PfvFieldOutput fields;
+  fields.every = words.count("the number of steps");
+  fields.path = words.word("the file's name");
+  const std::string ending = ".pvd";
+  if (fields.path.size() <= ending.size() ||
+      fields.path.compare(fields.path.size() - ending.size(), ending.size(), ending) != 0)
+    words.fail("the file's name must end in .pvd, not be '" + fields.path + "'");
+  settings.fields = fields;
+}
+
+void parse_profile(Words& words, PfvSettings& settings) {
+  PfvProfileOutput profile;
+  profile.axis = words.axis();
+  profile.planes = words.count("the number of planes");
+  profile.every = words.count("the number of steps");
+  profile.path = words.word("the file's name");
+  settings.profile = profile;
+}
+
+void parse_keyword(Words& words, PfvSettings& settings) {
+  const std::string keyword = words.keyword();
+  if (keyword == "viscosity") settings.fluid.viscosity = words.number("the viscosity");
+  else if (keyword == "density") settings.fluid.density = words.number("the density");
+  else if (keyword == "bulk_modulus") settings.fluid.bulk_modulus = words.number("the modulus");
+  else if (keyword == "buoyancy") settings.options.buoyancy = words.yes_or_no();
+  else if (keyword == "face") parse_face(words, settings);
+  else if (keyword == "patch") parse_patch(words, settings);
+  else if (keyword == "pressure_profile") parse_pressure_profile(words, settings);
+  else if (keyword == "retriangulate")
+    settings.options.retriangulation_strain = words.number("the strain");
+  else if (keyword == "couple_every") settings.couple_every = words.count("the number of steps");
+  else if (keyword == "conductance")
+    settings.options.conductance = pfv::conductance_law_named(words.word("the law's name"));
+  else if (keyword == "solver")
+    settings.options.solver = pfv::solver_named(words.word("the solver's name"));
+  else if (keyword == "output") parse_fields(words, settings);
+  else if (keyword == "profile") parse_profile(words, settings);
+  else
+    throw pfv::InputError("unknown keyword '" + keyword +
+                          "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
+                          "pressure_profile, retriangulate, couple_every, conductance, solver, "
+                          "output and profile");
+}
+
+/// A profile makes its face one of imposed pressure, which a face with another boundary is not.
+void apply_profiles(PfvSettings& settings) {
+  for (const pfv::Face name : pfv::all_faces) {
+    PfvFace& face = settings.faces[static_cast<int>(name)];
+    if (!face.profile) continue;
+    if (face.boundary.kind == Kind::flux)
+      throw pfv::InputError(std::string("face ") + pfv::name_of(name) +
+                            " has a flux and a pressure_profile; give it one of them");
+    face.boundary.kind = Kind::pressure;
+  }
+}
+
+void require_all_faces(const PfvSettings& settings) {
+  std::string missing;
+  for (const pfv::Face name : pfv::all_faces)
+    if (settings.faces[static_cast<int>(name)].source == Source::none)
+      missing += std::string(missing.empty() ? "" : ", ") + pfv::name_of(name);
+  if (!missing.empty())
+    throw pfv::InputError("missing: face " + missing +
+                          "; each of the six needs `face NAME (plane X | wall FIX_ID | mesh FIX_ID "
+                          "| extent)`");
+}
+
+}  // namespace
+
+PfvSettings parse_pfv(int narg, char** arg) {
+  PfvSettings settings;
+  settings.options.outside = pfv::OutsideGrains::leave_out;
+  settings.options.sphere_pressure = true;
+  if (std::none_of(arg, arg + narg, [](const char* a) { return std::string(a) == "viscosity"; }))
+    throw pfv::InputError("keyword 'viscosity' is missing; give `viscosity MU`, Pa s");
+  for (Words words(narg, arg); !words.done();) parse_keyword(words, settings);
+  require_all_faces(settings);
+  apply_profiles(settings);
+  pfv::check(settings.fluid);
+  pfv::check(settings.options);
+  return settings;
+}
+
+int modify_pfv(PfvSettings& settings, int narg, char** arg) {
+  Words words(narg, arg);
+  PfvSettings changed = settings;
+  const std::string keyword = words.keyword();
+  const auto set_boundary = [&](Kind kind, const char* what) {
+    PfvFace& face = changed.faces[static_cast<int>(words.face())];
+    face.boundary = {kind, kind == Kind::sealed ? PfvValue{} : words.value(what)};
+    face.profile.reset();
+  };
+  if (keyword == "viscosity") changed.fluid.viscosity = words.number("the viscosity");
+  else if (keyword == "retriangulate")
+    changed.options.retriangulation_strain = words.number("the strain");
+  else if (keyword == "couple_every") changed.couple_every = words.count("the number of steps");
+  else if (keyword == "pressure") set_boundary(Kind::pressure, "the pressure");
+  else if (keyword == "flux") set_boundary(Kind::flux, "the flux");
+  else if (keyword == "sealed") set_boundary(Kind::sealed, "");
+  else
+    throw pfv::InputError("fix_modify knows no keyword '" + keyword +
+                          "'; there are viscosity, retriangulate, couple_every, pressure, flux and "
+                          "sealed");
+  pfv::check(changed.fluid);
+  pfv::check(changed.options);
+  settings = changed;
+  return words.taken();
+}
+
+std::vector<const PfvValue*> values_of(const PfvSettings& settings) {
+  std::vector<const PfvValue*> values;
+  for (const PfvFace& face : settings.faces) {
+    if (face.profile) {
+      values.push_back(&face.profile->mean);
+      values.push_back(&face.profile->amplitude);
+    } else {
+      values.push_back(&face.boundary.value);
+    }
+  }
+  for (const PfvPatch& patch : settings.patches) values.push_back(&patch.boundary.value);
+  return values;
+}
+
+}  // namespace LAMMPS_NS

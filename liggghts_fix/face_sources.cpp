@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "face_sources.h"
+
+#include "pfv/error.hpp"
+
+#include "fix_mesh_surface.h"
+#include "fix_wall_gran.h"
+#include "mesh_module_stress.h"
+#include "modify.h"
+#include "primitive_wall.h"
+#include "tri_mesh.h"
+
+#include <mpi.h>
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace LAMMPS_NS {
+
+namespace {
+
+using Source = PfvFace::Source;
+
+/// Nodes of a mesh may stray this much from their plane, as a part of the mesh's size: STL files
+/// carry about seven digits.
+constexpr double planarity = 1e-6;
+
+[[noreturn]] void fail(int number, const std::string& what) {
+  const pfv::Face face = pfv::all_faces[number];
+  throw pfv::InputError(std::string("face ") + pfv::name_of(face) + ": " + what);
+}
+
+char axis_name(int number) { return "xyz"[number / 2]; }
+
+Fix* find_fix(Modify* modify, int number, const std::string& id) {
+  const int index = modify->find_fix(id.c_str());
+  if (index < 0) fail(number, "there is no fix '" + id + "'; define it before this fix");
+  return modify->fix[index];
+}
+
+/// Axis and position of a primitive plane. PrimitiveWall keeps them private, but the vector from a
+/// place to the wall tells both: it has one component that changes with the place.
+struct Plane {
+  int axis;
+  double position;
+};
+Plane plane_of(PrimitiveWall* wall) {
+  double a[3] = {0.0, 0.0, 0.0}, b[3] = {1.0, 2.0, 4.0};
+  double to_wall_a[3] = {0.0, 0.0, 0.0}, to_wall_b[3] = {0.0, 0.0, 0.0};
+  wall->resolveContact(a, 0.0, to_wall_a);
+  wall->resolveContact(b, 0.0, to_wall_b);
+  for (int axis = 0; axis < 3; ++axis)
+    if (to_wall_a[axis] != to_wall_b[axis]) return {axis, to_wall_a[axis]};
+  return {-1, 0.0};
+}
+
+}  // namespace
+
+void PfvFaceSources::bind(const std::array<PfvFace, 6>& faces) {
+  faces_ = faces;
+  meshes_.fill(nullptr);
+  velocities_.fill(0.0);
+  for (int number = 0; number < 6; ++number) {
+    const PfvFace& face = faces_[number];
+    if (face.source == Source::plane) positions_[number] = face.plane;
+    if (face.source == Source::wall) bind_wall(face, number);
+    if (face.source == Source::mesh) bind_mesh(face, number);
+  }
+}
+
+void PfvFaceSources::bind_wall(const PfvFace& face, int number) {
+  auto* wall = dynamic_cast<FixWallGran*>(find_fix(modify, number, face.fix_id));
+  if (!wall) fail(number, "fix '" + face.fix_id + "' is no wall/gran");
+  if (wall->is_mesh_wall())
+    fail(number, "fix '" + face.fix_id + "' is a mesh wall; name its mesh with `mesh FIX_ID`");
+  PrimitiveWall* primitive = wall->primitiveWall();
+  if (primitive->axis() >= 0)
+    fail(number, "fix '" + face.fix_id + "' is a cylinder; a face needs a plane");
+  const Plane plane = plane_of(primitive);
+  if (plane.axis != number / 2)
+    fail(number, "wall '" + face.fix_id + "' is not normal to the " + axis_name(number) + " axis");
+  positions_[number] = plane.position;
+}
+
+void PfvFaceSources::bind_mesh(const PfvFace& face, int number) {
+  auto* mesh = dynamic_cast<FixMeshSurface*>(find_fix(modify, number, face.fix_id));
+  if (!mesh)
+    fail(number, "fix '" + face.fix_id + "' is no mesh/surface; name a primitive plane with "
+                 "`wall FIX_ID`");
+  meshes_[number] = mesh;
+}
+
+void PfvFaceSources::read() {
+  for (int number = 0; number < 6; ++number)
+    if (meshes_[number]) read_mesh(number);
+}
+
+void PfvFaceSources::read_mesh(int number) {
+  const int axis = number / 2;
+  TriMesh* mesh = meshes_[number]->triMesh();
+  auto* node_velocities =
+      mesh->isMoving() ? mesh->prop().getElementProperty<MultiVectorContainer<double, 3, 3>>("v")
+                       : nullptr;
+  // lowest and negative highest place (0-2, 3-5) and velocity (6, 7): a rank may own no triangle
+  std::array<double, 8> local, global;
+  local.fill(std::numeric_limits<double>::max());
+  for (int i = 0; i < mesh->sizeLocal(); ++i) {
+    for (int j = 0; j < 3; ++j) {
+      double node[3];
+      mesh->node(i, j, node);
+      for (int k = 0; k < 3; ++k) {
+        local[k] = std::min(local[k], node[k]);
+        local[3 + k] = std::min(local[3 + k], -node[k]);
+      }
+      const double velocity = node_velocities ? (*node_velocities)(i)[j][axis] : 0.0;
+      local[6] = std::min(local[6], velocity);
+      local[7] = std::min(local[7], -velocity);
+    }
+  }
+  MPI_Allreduce(local.data(), global.data(), 8, MPI_DOUBLE, MPI_MIN, world);
+
+  const auto extent = [&](int k) { return -global[3 + k] - global[k]; };
+  if (extent(axis) > planarity * std::max({extent(0), extent(1), extent(2)})) {
+    std::ostringstream text;
+    text << "mesh '" << faces_[number].fix_id << "' is not a plane normal to the "
+         << axis_name(number) << " axis: its nodes reach from " << global[axis] << " to "
+         << -global[3 + axis] << " m along it";
+    fail(number, text.str());
+  }
+  positions_[number] = 0.5 * (global[axis] - global[3 + axis]);
+  velocities_[number] = 0.5 * (global[6] - global[7]);
+}
+
+void PfvFaceSources::follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& centres,
+                                   const Eigen::Ref<const Eigen::VectorXd>& radii) {
+  for (int number = 0; number < 6; ++number) {
+    if (faces_[number].source != Source::extent) continue;
+    if (radii.size() == 0) fail(number, "`extent` has no grain to follow; the group is empty");
+    const auto coordinates = centres.row(number / 2).transpose();
+    positions_[number] = pfv::is_upper(pfv::all_faces[number])
+                             ? (coordinates + radii).maxCoeff()
+                             : (coordinates - radii).minCoeff();
+  }
+}
+
+void PfvFaceSources::push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const {
+  for (int number = 0; number < 6; ++number) {
+    if (!meshes_[number]) continue;
+    auto* stress = dynamic_cast<MeshModuleStress*>(meshes_[number]->get_module("stress"));
+    if (!stress) continue;
+    Eigen::Vector3d force = forces[number];
+    stress->add_global_external_contribution(force.data());
+  }
+}
+
+}  // namespace LAMMPS_NS

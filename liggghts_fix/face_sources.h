@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the six faces of the flow box are and how fast they move: planes, walls, meshes, grains.
+#ifndef LMP_PFV_FACE_SOURCES_H
+#define LMP_PFV_FACE_SOURCES_H
+
+#include "arguments.h"
+
+#include "pointers.h"
+
+#include <array>
+
+namespace LAMMPS_NS {
+
+class PfvFaceSources : protected Pointers {
+ public:
+  explicit PfvFaceSources(class LAMMPS* lmp) : Pointers(lmp) {}
+
+  /// Finds the walls and meshes that the faces name. Throws pfv::InputError, the same on all ranks,
+  /// where one is missing or is no plane normal to the face's axis.
+  void bind(const std::array<PfvFace, 6>& faces);
+
+  /// Reads where planes, walls and meshes are now; collective. Leaves `extent` faces alone. Throws
+  /// pfv::InputError, the same on all ranks, for a mesh that is no longer normal to its axis.
+  void read();
+
+  /// Puts `extent` faces at the extremes of the grains; rank 0. Throws pfv::InputError when there
+  /// are none.
+  void follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& centres,
+                     const Eigen::Ref<const Eigen::VectorXd>& radii);
+
+  const std::array<double, 6>& positions() const { return positions_; }    ///< m
+  /// m/s along the face's axis; that of a mesh's nodes, 0 for everything else.
+  const std::array<double, 6>& velocities() const { return velocities_; }
+
+  /// Adds a force (N) to what the meshes' stress modules record in this step, so that outputs and
+  /// servos see it. Rank 0.
+  void push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const;
+
+ private:
+  void bind_wall(const PfvFace& face, int number);
+  void bind_mesh(const PfvFace& face, int number);
+  void read_mesh(int number);
+
+  std::array<PfvFace, 6> faces_;
+  std::array<class FixMeshSurface*, 6> meshes_{};
+  std::array<double, 6> positions_{};
+  std::array<double, 6> velocities_{};
+};
+
+}  // namespace LAMMPS_NS
+
+#endif

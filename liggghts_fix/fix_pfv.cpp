@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fix_pfv.h"
+
+#include "pfv/error.hpp"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_buoyancy.h"
+#include "fix_gravity.h"
+#include "fix_property_atom.h"
+#include "group.h"
+#include "input.h"
+#include "modify.h"
+#include "update.h"
+#include "variable.h"
+
+#include <mpi.h>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace LAMMPS_NS {
+
+using namespace FixConst;
+
+FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), grains_(lmp) {
+  check_environment();
+  everywhere([&] { settings_ = parse_pfv(narg - 3, arg + 3); });
+  on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
+
+  scalar_flag = vector_flag = 1;
+  size_vector = 8;
+  extscalar = extvector = 0;
+  global_freq = 1;
+  peratom_flag = 1;
+  size_peratom_cols = 4;
+  peratom_freq = 1;
+  restart_global = 1;
+}
+
+int FixPfv::setmask() { return POST_FORCE | POST_RUN; }
+
+void FixPfv::post_create() {
+  const std::string property_id = std::string(id) + "_prop";
+  const char* words[] = {property_id.c_str(), group->names[igroup], "property/atom",
+                         property_id.c_str(), "vector", "no", "no", "no", "0.", "0.", "0.", "0."};
+  per_atom_ = modify->add_fix_property_atom(12, const_cast<char**>(words), style);
+  array_atom = per_atom_->array_atom;
+}
+
+void FixPfv::pre_delete(bool unfixflag) {
+  if (unfixflag && per_atom_) modify->delete_fix(per_atom_->id);
+  per_atom_ = nullptr;
+}
+
+void FixPfv::init() {
+  check_environment();
+  if (std::strcmp(update->integrate_style, "verlet") != 0)
+    error->fix_error(FLERR, this, "needs run_style verlet");
+  check_variables();
+  check_other_fixes();
+  everywhere([&] { faces_.bind(settings_.faces); });
+  array_atom = per_atom_->array_atom;
+}
+
+// ---------------------------------------------------------------------------------------- errors
+
+template <typename Work>
+void FixPfv::everywhere(Work&& work) {
+  try {
+    work();
+  } catch (const std::exception& problem) {
+    error->fix_error(FLERR, this, problem.what());
+  }
+}
+
+void FixPfv::fail_together(std::string message) {
+  int length = static_cast<int>(message.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, world);
+  if (length == 0) return;
+  message.resize(length);
+  MPI_Bcast(message.data(), length, MPI_CHAR, 0, world);
+  error->fix_error(FLERR, this, message.c_str());
+}
+
+// -------------------------------------------------------------------------------------- refusals
+
+void FixPfv::check_environment() {
+  if (std::strcmp(update->unit_style, "si") != 0)
+    error->fix_error(FLERR, this, "needs `units si`");
+  if (!atom->radius_flag || !atom->rmass_flag || !atom->tag_enable)
+    error->fix_error(FLERR, this, "needs atoms with radius, mass and tag; use `atom_style granular`");
+  if (atom->superquadric_flag)
+    error->fix_error(FLERR, this, "needs spheres; superquadric atoms have no pore network");
+  if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
+    error->fix_error(FLERR, this, "needs a box without periodic sides; use `boundary f f f`");
+}
+
+void FixPfv::check_variables() {
+  for (const PfvValue* value : values_of(settings_)) {
+    if (value->variable.empty()) continue;
+    const int index = input->variable->find(const_cast<char*>(value->variable.c_str()));
+    if (index < 0)
+      error->fix_error(FLERR, this, ("there is no variable '" + value->variable + "'").c_str());
+    if (!input->variable->equalstyle(index))
+      error->fix_error(FLERR, this,
+                       ("variable '" + value->variable + "' is not of equal style").c_str());
+  }
+}
+
+void FixPfv::check_other_fixes() {
+  bool gravity = false, buoyancy = false;
+  for (int i = 0; i < modify->nfix; ++i) {
+    const Fix* other = modify->fix[i];
+    gravity |= dynamic_cast<const FixGravity*>(other) != nullptr;
+    buoyancy |= dynamic_cast<const FixBuoyancy*>(other) != nullptr;
+    if (other != this && std::strcmp(other->style, style) == 0 && shares_grains_with(*other)) {
+      const std::string message = std::string("shares grains with fix pfv '") + other->id +
+                                  "'; two flows need groups without a common grain";
+      error->fix_error(FLERR, this, message.c_str());
+    }
+  }
+  if (gravity && buoyancy && settings_.options.buoyancy)
+    error->fix_error(FLERR, this,
+                     "counts buoyancy twice with `fix buoyancy`; remove that or set `buoyancy no`");
+}
+
+bool FixPfv::shares_grains_with(const Fix& other) const {
+  if (other.igroup == igroup) return true;
+  int common = 0;
+  for (int i = 0; i < atom->nlocal && !common; ++i)
+    common = (atom->mask[i] & groupbit) && (atom->mask[i] & other.groupbit);
+  MPI_Allreduce(MPI_IN_PLACE, &common, 1, MPI_INT, MPI_MAX, world);
+  return common != 0;
+}
+
+// -------------------------------------------------------------------------------------- boundaries
+
+double FixPfv::value_of(const PfvValue& value) {
+  if (value.variable.empty()) return value.number;
+  return input->variable->compute_equal(const_cast<char*>(value.variable.c_str()));
+}
+
+pfv::Boundary FixPfv::boundary_of(const PfvBoundary& boundary) {
+  return {boundary.kind, value_of(boundary.value), {}};
+}
+
+pfv::Boundary FixPfv::boundary_of(const PfvFace& face) {
+  if (!face.profile) return boundary_of(face.boundary);
+  const PfvCosine& cosine = *face.profile;
+  const double mean = value_of(cosine.mean), amplitude = value_of(cosine.amplitude);
+  const auto pressure = [axis = cosine.axis, half = cosine.half_period, mean, amplitude](
+                            const Eigen::Vector3d& place, double) {
+    return mean + amplitude * std::cos(M_PI * place[axis] / half);
+  };
+  return {pfv::Boundary::Kind::pressure, mean, pressure};
+}
+
+bool FixPfv::has_variables() const {
+  const auto values = values_of(settings_);
+  return std::any_of(values.begin(), values.end(),
+                     [](const PfvValue* value) { return !value->variable.empty(); });
+}
+
+/// Boundary conditions and velocities of the faces; their positions follow in place_faces.
+pfv::Box FixPfv::current_box() {
+  const bool variables = has_variables();
+  if (variables) modify->clearstep_compute();
+  pfv::Box box;
+  for (int number = 0; number < 6; ++number) {
+    const PfvFace& face = settings_.faces[number];
+    box.faces[number] = {face.wall, boundary_of(face), faces_.velocities()[number]};
+  }
+  for (const PfvPatch& patch : settings_.patches)
+    box.patches.push_back({patch.face, patch.rectangle, boundary_of(patch.boundary)});
+  if (variables)
+    modify->addstep_compute(update->ntimestep + settings_.couple_every - steps_since_flow_);
+  return box;
+}
+
+// ------------------------------------------------------------------------------------- flow calls
+
+/// Collects what one flow call needs; collective.
+void FixPfv::read_host() {
+  grains_.gather(groupbit);
+  everywhere([&] { faces_.read(); });
+  box_ = current_box();
+}
+
+/// Completes the box on rank 0, where the grains are.
+void FixPfv::place_faces(pfv::Box& box) {
+  const pfv::Packing packing = grains_.packing();
+  faces_.follow_grains(packing.positions, packing.radii);
+  for (const pfv::Face face : pfv::all_faces)
+    (pfv::is_upper(face) ? box.upper : box.lower)[pfv::axis_of(face)] =
+        faces_.positions()[static_cast<int>(face)];
+}
+
+/// A Flow keeps its fluid for life: where gravity or viscosity have changed since the last run,
+/// another one takes over its state, on a network that both build from the same grains.
+void FixPfv::prepare_flow(const pfv::Box& box) {
+  if (flow_ && flow_->fluid().gravity == settings_.fluid.gravity &&
+      flow_->fluid().viscosity == settings_.fluid.viscosity) {
+    flow_->set_box(box);
+    return;
+  }
+  if (flow_) {
+    flow_->set_box(box);
+    flow_->rebuild();
+    flow_->evaluate(grains_.packing(), settings_.couple_every * update->dt);
+    restored_ = flow_->state();
+  }
+  flow_ = std::make_unique<pfv::Flow>(box, settings_.fluid, settings_.options);
+  if (restored_) flow_->set_state(*restored_);
+  restored_.reset();
+}
+
+void FixPfv::update_gravity() {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < modify->nfix; ++i) {
+    auto* gravity = dynamic_cast<FixGravity*>(modify->fix[i]);
+    if (!gravity) continue;
+    Eigen::Vector3d one;
+    gravity->get_gravity(one.data());
+    sum += one;
+  }
+  settings_.fluid.gravity = sum;
+}
+
+/// The forces of the present state, without advancing the flow: a run begins.
+void FixPfv::setup(int) {
+  update_gravity();
+  read_host();
+  if (steps_since_flow_ == 0) last_positions_ = faces_.positions();
+  on_root([&] {
+    place_faces(box_);
+    prepare_flow(box_);
+    flow_->evaluate(grains_.packing(), settings_.couple_every * update->dt);
+    if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
+  });
+  after_flow_call();
+  apply_forces();
+}
+
+void FixPfv::post_force(int) {
+  elapsed_ += update->dt;
+  if (++steps_since_flow_ >= settings_.couple_every) advance();
+  apply_forces();
+  push_meshes();
+}
+
+void FixPfv::advance() {
+  read_host();
+  // x is that of the step's end and v that of its middle: just what backward Euler needs; over
+  // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
+  const bool mean = settings_.couple_every > 1;
+  if (mean)
+    for (int number = 0; number < 6; ++number)
+      if (settings_.faces[number].source == PfvFace::Source::mesh)
+        box_.faces[number].velocity =
+            (faces_.positions()[number] - last_positions_[number]) / elapsed_;
+  last_positions_ = faces_.positions();
+  on_root([&] {
+    place_faces(box_);
+    if (mean) grains_.use_mean_velocities(last_grains_, elapsed_);
+    flow_->set_box(box_);
+    flow_->step(grains_.packing(), elapsed_);
+    if (mean) last_grains_ = grains_.snapshot();
+  });
+  steps_since_flow_ = 0;
+  elapsed_ = 0.0;
+  after_flow_call();
+}
+
+void FixPfv::after_flow_call() {
+  on_root([&] {
+    report_.reset();
+    files_->write(*flow_, grains_.packing(), update->ntimestep, update->get_cur_time());
+  });
+  grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{}, per_atom_->array_atom);
+}
+
+void FixPfv::apply_forces() {
+  array_atom = per_atom_->array_atom;  // reallocated when the number of atoms grows
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit)
+      for (int k = 0; k < 3; ++k) atom->f[i][k] += array_atom[i][k];
+}
+
+void FixPfv::push_meshes() {
+  if (comm->me != 0) return;
+  std::array<Eigen::Vector3d, 6> forces;
+  for (int number = 0; number < 6; ++number) {
+    const pfv::FaceResult& face = flow_->faces()[number];
+    forces[number] = face.force_pressure + face.force_viscous;
+  }
+  faces_.push_meshes(forces);
+}
+
+// ------------------------------------------------------------------------------- changes, restart
+
+int FixPfv::modify_param(int narg, char** arg) {
+  int taken = 0;
+  everywhere([&] { taken = modify_pfv(settings_, narg, arg); });
+  on_root([&] {
+    if (flow_) flow_->set_retriangulation_strain(settings_.options.retriangulation_strain);
+  });
+  return taken;
+}
+
+/// The run that goes on builds its network anew from the grains of the restart file, just as the run
+/// that starts from the file will: both go on from the same network, strain and pressures.
+void FixPfv::write_restart(FILE* file) {
+  read_host();
+  PfvRestartRecord record;
+  record.step = update->ntimestep;
+  record.time = update->get_cur_time();
+  record.steps_since_flow = steps_since_flow_;
+  record.elapsed = elapsed_;
+  record.last_positions = last_positions_;
+  on_root([&] {
+    if (flow_) {
+      place_faces(box_);
+      flow_->set_box(box_);
+      flow_->rebuild();
+      flow_->evaluate(grains_.packing(), settings_.couple_every * update->dt);
+      record.flow = flow_->state();
+      report_.reset();
+    } else if (restored_) {
+      record.flow = *restored_;
+    }
+    if (settings_.couple_every > 1) record.last_grains = last_grains_;
+    record.written = files_->written();
+    const std::vector<double> data = pack(record);
+    const int bytes = static_cast<int>(data.size() * sizeof(double));
+    if (std::fwrite(&bytes, sizeof bytes, 1, file) != 1 ||
+        std::fwrite(data.data(), 1, bytes, file) != static_cast<std::size_t>(bytes))
+      throw pfv::FileError("the restart file cannot be written; is the disk full?");
+  });
+}
+
+void FixPfv::restart(char* bytes) {
+  everywhere([&] {
+    PfvRestartRecord record = unpack(bytes);
+    steps_since_flow_ = record.steps_since_flow;
+    elapsed_ = record.elapsed;
+    last_positions_ = record.last_positions;
+    if (!files_) return;  // not rank 0
+    last_grains_ = std::move(record.last_grains);
+    restored_ = std::move(record.flow);
+    files_->resume(record.step, record.time, std::move(record.written));
+  });
+}
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// fix pfv: pore-scale finite volume flow between the grains. See doc/fix_pfv.md.
+#ifdef FIX_CLASS
+
+FixStyle(pfv,FixPfv)
+
+#else
+
+#ifndef LMP_FIX_PFV_H
+#define LMP_FIX_PFV_H
+
+#include "arguments.h"
+#include "face_sources.h"
+#include "grain_exchange.h"
+#include "restart_record.h"
+#include "result_files.h"
+
+#include "pfv/flow.hpp"
+
+#include "fix.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace LAMMPS_NS {
+
+/// Gathers the grains on rank 0, calls the flow library once, scatters the forces. The physics is in
+/// pfv::Flow, which lives on rank 0 alone; everything else here is the same on all ranks.
+class FixPfv : public Fix {
+ public:
+  FixPfv(class LAMMPS*, int, char**);
+
+  int setmask() override;
+  void post_create() override;
+  void pre_delete(bool unfixflag) override;
+  void init() override;
+  void setup(int vflag) override;
+  void post_force(int vflag) override;
+  void post_run() override;
+
+  double compute_scalar() override;
+  double compute_vector(int n) override;
+  int modify_param(int narg, char** arg) override;
+  void write_restart(FILE* file) override;
+  void restart(char* bytes) override;
+  double memory_usage() override;
+
+ private:
+  // errors: each ends the run on all ranks, with one line
+  template <typename Work>
+  void everywhere(Work&& work);  ///< work that fails on all ranks or on none
+  template <typename Work>
+  void on_root(Work&& work);  ///< work of rank 0, whose failure the others are told of
+  void fail_together(std::string message);
+
+  // refusals
+  void check_environment();
+  void check_variables();
+  void check_other_fixes();
+  bool shares_grains_with(const Fix& other) const;
+
+  // one flow call
+  pfv::Box current_box();
+  double value_of(const PfvValue& value);
+  pfv::Boundary boundary_of(const PfvBoundary& boundary);
+  pfv::Boundary boundary_of(const PfvFace& face);
+  bool has_variables() const;
+  void read_host();
+  void advance();
+  void prepare_flow(const pfv::Box& box);
+  void place_faces(pfv::Box& box);
+  void update_gravity();
+  void after_flow_call();
+  void apply_forces();
+  void push_meshes();
+
+  // outputs
+  double quantity(int n);
+  const pfv::Report& report();
+  void print_phases();
+  void print(const std::string& text);
+
+  PfvSettings settings_;
+  PfvFaceSources faces_;
+  PfvGrainExchange grains_;
+  class FixPropertyAtom* per_atom_ = nullptr;
+  pfv::Box box_;
+
+  // since the last flow step
+  int steps_since_flow_ = 0;
+  double elapsed_ = 0.0;
+  std::array<double, 6> last_positions_{};
+
+  // rank 0 only
+  std::unique_ptr<pfv::Flow> flow_;
+  std::unique_ptr<PfvResultFiles> files_;
+  std::optional<pfv::FlowState> restored_;
+  std::optional<pfv::Report> report_;
+  PfvSnapshot last_grains_;
+  bool cited_ = false;
+};
+
+template <typename Work>
+void FixPfv::on_root(Work&& work) {
+  std::string message;
+  int rank = 0;
+  MPI_Comm_rank(world, &rank);
+  if (rank == 0) {
+    try {
+      work();
+    } catch (const std::exception& problem) {
+      message = problem.what();
+      if (message.empty()) message = "an exception without a text";
+    }
+  }
+  fail_together(message);
+}
+
+}  // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `fix pfv` answers to thermo output and prints at the end of a run.
+#include "fix_pfv.h"
+
+#include "comm.h"
+
+#include <mpi.h>
+#include <cstdio>
+
+namespace LAMMPS_NS {
+
+double FixPfv::compute_scalar() { return compute_vector(-1); }
+
+double FixPfv::compute_vector(int n) {
+  double value = 0.0;
+  on_root([&] {
+    if (flow_) value = quantity(n);
+  });
+  MPI_Bcast(&value, 1, MPI_DOUBLE, 0, world);
+  return value;
+}
+
+double FixPfv::quantity(int n) {
+  switch (n) {
+    case 0: return report().inflow;
+    case 1: return report().outflow;
+    case 2: return report().mass_error;
+    case 3: return report().force_balance_error;
+    case 4: return static_cast<double>(flow_->retriangulations());
+    case 5: return flow_->time_step_limit(grains_.masses());
+    case 6: return flow_->mean_pressure();
+    case 7: return static_cast<double>(flow_->hidden_or_outside());
+    default: return flow_->strain();
+  }
+}
+
+/// One report serves all outputs of a step.
+const pfv::Report& FixPfv::report() {
+  if (!report_) report_ = flow_->report();
+  return *report_;
+}
+
+void FixPfv::post_run() {
+  on_root([&] {
+    if (flow_) print_phases();
+  });
+}
+
+void FixPfv::print_phases() {
+  const pfv::Report& done = report();
+  const struct {
+    const char* name;
+    double seconds;
+    std::int64_t count;
+  } phases[] = {{"triangulate", done.seconds.triangulate, done.counts.triangulate},
+                {"throats", done.seconds.throats, done.counts.triangulate},
+                {"assemble", done.seconds.assemble, done.counts.triangulate},
+                {"order", done.seconds.order, done.counts.order},
+                {"factor", done.seconds.factor, done.counts.factor},
+                {"solve", done.seconds.solve, done.counts.solve},
+                {"forces", done.seconds.forces, done.counts.force_matrix},
+                {"total", done.seconds.total, done.counts.solve}};
+  char line[160];
+  std::string text = "\nFix pfv (id " + std::string(id) + ") since it began:\n";
+  text += "phase         CPU seconds       count\n";
+  for (const auto& phase : phases) {
+    std::snprintf(line, sizeof line, "%-12s %12.4f %11lld\n", phase.name, phase.seconds,
+                  static_cast<long long>(phase.count));
+    text += line;
+  }
+  std::snprintf(line, sizeof line,
+                "spheres %lld  hidden %lld  outside %lld  pores %lld  unknowns %lld\n",
+                static_cast<long long>(done.spheres), static_cast<long long>(done.hidden),
+                static_cast<long long>(done.outside), static_cast<long long>(done.pores),
+                static_cast<long long>(done.unknowns));
+  text += line;
+  std::snprintf(line, sizeof line, "residual %.3g  mass error %.3g  force balance error %.3g\n",
+                done.residual, done.mass_error, done.force_balance_error);
+  text += line;
+  if (!cited_)
+    text +=
+        "Please cite, for the flow and for its coupling with the grains:\n"
+        "  Chareyre, Cortis, Catalano, Barthelemy (2012) Pore-scale modeling of viscous flow and\n"
+        "  induced forces in dense sphere packings. Transport in Porous Media 92:473-493\n"
+        "  Catalano, Chareyre, Barthelemy (2014) Pore-scale modeling of fluid-particles interaction\n"
+        "  and emerging poromechanical effects. Int. J. Numer. Anal. Methods Geomech. 38:51-71\n";
+  cited_ = true;
+  print(text);
+}
+
+void FixPfv::print(const std::string& text) {
+  for (FILE* file : {screen, logfile})
+    if (file) std::fputs(text.c_str(), file);
+}
+
+double FixPfv::memory_usage() { return grains_.memory_usage(); }
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "grain_exchange.h"
+
+#include "atom.h"
+#include "comm.h"
+
+#include <mpi.h>
+#include <algorithm>
+#include <numeric>
+
+namespace LAMMPS_NS {
+
+namespace {
+
+constexpr int sent_width = 9;      // tag, place, velocity, radius, mass
+constexpr int returned_width = 4;  // force, pressure
+
+std::vector<int> times(const std::vector<int>& counts, int width) {
+  std::vector<int> scaled(counts);
+  for (int& count : scaled) count *= width;
+  return scaled;
+}
+
+}  // namespace
+
+void PfvGrainExchange::gather(int groupbit) {
+  groupbit_ = groupbit;
+  local_.clear();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *x = atom->x[i], *v = atom->v[i];
+    local_.insert(local_.end(), {static_cast<double>(atom->tag[i]), x[0], x[1], x[2], v[0], v[1],
+                                 v[2], atom->radius[i], atom->rmass[i]});
+  }
+  local_count_ = static_cast<int>(local_.size()) / sent_width;
+
+  counts_.resize(comm->nprocs);
+  offsets_.resize(comm->nprocs);
+  MPI_Gather(&local_count_, 1, MPI_INT, counts_.data(), 1, MPI_INT, 0, world);
+  if (comm->me == 0) {
+    std::exclusive_scan(counts_.begin(), counts_.end(), offsets_.begin(), 0);
+    received_.resize(std::size_t(sent_width) * (offsets_.back() + counts_.back()));
+  }
+  MPI_Gatherv(local_.data(), sent_width * local_count_, MPI_DOUBLE, received_.data(),
+              times(counts_, sent_width).data(), times(offsets_, sent_width).data(), MPI_DOUBLE, 0,
+              world);
+  if (comm->me == 0) sort_by_tag();
+}
+
+void PfvGrainExchange::sort_by_tag() {
+  const int count = static_cast<int>(received_.size()) / sent_width;
+  const auto by_tag = [this](int a, int b) {
+    return received_[std::size_t(sent_width) * a] < received_[std::size_t(sent_width) * b];
+  };
+  // atoms change their places in LIGGGHTS' arrays seldom: the last order mostly still holds
+  if (static_cast<int>(order_.size()) != count) {
+    order_.resize(count);
+    std::iota(order_.begin(), order_.end(), 0);
+  }
+  if (!std::is_sorted(order_.begin(), order_.end(), by_tag))
+    std::sort(order_.begin(), order_.end(), by_tag);
+
+  grains_.ids.resize(count);
+  grains_.positions.resize(3, count);
+  grains_.velocities.resize(3, count);
+  grains_.radii.resize(count);
+  masses_.resize(count);
+  for (int k = 0; k < count; ++k) {
+    const double* row = &received_[std::size_t(sent_width) * order_[k]];
+    grains_.ids[k] = static_cast<std::int64_t>(row[0]);
+    grains_.positions.col(k) << row[1], row[2], row[3];
+    grains_.velocities.col(k) << row[4], row[5], row[6];
+    grains_.radii[k] = row[7];
+    masses_[k] = row[8];
+  }
+}
+
+void PfvGrainExchange::use_mean_velocities(const PfvSnapshot& then, double elapsed) {
+  std::size_t old = 0;
+  for (Eigen::Index k = 0; k < grains_.ids.size(); ++k) {
+    while (old < then.tags.size() && then.tags[old] < grains_.ids[k]) ++old;
+    if (old == then.tags.size()) return;
+    if (then.tags[old] != grains_.ids[k]) continue;
+    const Eigen::Map<const Eigen::Vector3d> place(&then.places[3 * old]);
+    grains_.velocities.col(k) = (grains_.positions.col(k) - place) / elapsed;
+  }
+}
+
+pfv::Packing PfvGrainExchange::packing() const {
+  const auto all = grains_.view();
+  if ((grains_.velocities.array() != 0.0).any()) return all;
+  return {all.ids, all.positions, all.radii, Eigen::Map<const Eigen::Matrix3Xd>(nullptr, 3, 0)};
+}
+
+PfvSnapshot PfvGrainExchange::snapshot() const {
+  const auto& ids = grains_.ids;
+  const auto& places = grains_.positions;
+  return {{ids.data(), ids.data() + ids.size()}, {places.data(), places.data() + places.size()}};
+}
+
+void PfvGrainExchange::scatter(const pfv::Forces& forces, double** per_atom) {
+  std::vector<double> all;
+  if (comm->me == 0) {
+    all.resize(returned_width * order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      double* row = &all[std::size_t(returned_width) * order_[k]];
+      Eigen::Map<Eigen::Vector3d>{row} = forces.total.col(k);
+      row[3] = forces.sphere_pressure[k];
+    }
+  }
+  std::vector<double> mine(std::size_t(returned_width) * local_count_);
+  MPI_Scatterv(all.data(), times(counts_, returned_width).data(),
+               times(offsets_, returned_width).data(), MPI_DOUBLE, mine.data(),
+               returned_width * local_count_, MPI_DOUBLE, 0, world);
+  const double* row = mine.data();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (atom->mask[i] & groupbit_) {
+      std::copy(row, row + returned_width, per_atom[i]);
+      row += returned_width;
+    } else {
+      std::fill(per_atom[i], per_atom[i] + returned_width, 0.0);
+    }
+  }
+}
+
+double PfvGrainExchange::memory_usage() const {
+  return sizeof(double) * static_cast<double>(local_.capacity() + received_.capacity());
+}
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The grains of all ranks on rank 0, sorted by tag, and the results back to their owners.
+#ifndef LMP_PFV_GRAIN_EXCHANGE_H
+#define LMP_PFV_GRAIN_EXCHANGE_H
+
+#include "pfv/flow.hpp"
+#include "pfv/packing.hpp"
+
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/// The grains at one instant, by tag: what mean velocities are reckoned from.
+struct PfvSnapshot {
+  std::vector<std::int64_t> tags;  ///< ascending
+  std::vector<double> places;      ///< three a grain, m
+};
+
+class PfvGrainExchange : protected Pointers {
+ public:
+  explicit PfvGrainExchange(class LAMMPS* lmp) : Pointers(lmp) {}
+
+  /// Collects tag, place, velocity, radius and mass of the group's grains on rank 0; collective.
+  /// They are sorted by tag there, so that the flow sees the same packing however LIGGGHTS has
+  /// spread and sorted its atoms.
+  void gather(int groupbit);
+
+  /// Replaces the velocities by mean ones since `then`, `elapsed` seconds ago; rank 0. Grains that
+  /// were not there then keep their own.
+  void use_mean_velocities(const PfvSnapshot& then, double elapsed);
+
+  /// The grains as gathered; rank 0. Without velocities where all are 0.
+  pfv::Packing packing() const;
+  const Eigen::VectorXd& masses() const { return masses_; }  ///< kg; rank 0
+  PfvSnapshot snapshot() const;                              ///< rank 0
+
+  /// Hands force (columns 0-2, N) and pressure (3, Pa) to the atoms as they were gathered and zeros
+  /// to those outside the group; collective, with no change of atoms since `gather`.
+  void scatter(const pfv::Forces& forces, double** per_atom);
+
+  double memory_usage() const;
+
+ private:
+  void sort_by_tag();
+
+  int groupbit_ = 0;
+  int local_count_ = 0;
+  std::vector<double> local_, received_;
+  std::vector<int> counts_, offsets_;  // grains of each rank
+  std::vector<int> order_;             // received row of each sorted grain
+
+  pfv::PackingArrays grains_;
+  Eigen::VectorXd masses_;
+};
+
+}  // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adds the style `pfv` to a stock libliggghts, without rebuilding it. Every `fix` command of every
+// Modify object (a `clear` makes a new one) passes through Modify::add_fix; this library's definition
+// stands before the one of libliggghts in the lookup order, enters the style, and calls the original.
+#include "fix_pfv.h"
+
+#include "modify.h"
+
+#include <dlfcn.h>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+
+using namespace LAMMPS_NS;
+
+namespace {
+
+using FixCreator = Fix* (*)(LAMMPS*, int, char**);
+using FixMap = std::map<std::string, FixCreator>;
+
+// Modify::fix_map is private. Access is not checked for the arguments of an explicit instantiation
+// ([temp.spec]), which makes this the one way to reach it that the language allows.
+struct FixMapTag {
+  using Member = FixMap* Modify::*;
+  friend Member member(FixMapTag);
+};
+template <typename Tag, typename Tag::Member Pointer>
+struct Expose {
+  friend typename Tag::Member member(Tag) { return Pointer; }
+};
+template struct Expose<FixMapTag, &Modify::fix_map>;
+
+Fix* create_pfv(LAMMPS* lmp, int narg, char** arg) { return new FixPfv(lmp, narg, arg); }
+
+using AddFix = void (*)(Modify*, int, char**, char*);
+
+AddFix original_add_fix() {
+  // Modify::add_fix(int, char**, char*)
+  void* symbol = dlsym(RTLD_NEXT, "_ZN9LAMMPS_NS6Modify7add_fixEiPPcS1_");
+  if (!symbol) {
+    std::fputs("fix pfv: libliggghts has no Modify::add_fix(int, char**, char*); LIGGGHTS 3.8 has\n",
+               stderr);
+    std::abort();
+  }
+  return reinterpret_cast<AddFix>(symbol);
+}
+
+}  // namespace
+
+__attribute__((visibility("default"))) void Modify::add_fix(int narg, char** arg, char* suffix) {
+  static const AddFix original = original_add_fix();
+  (*(this->*member(FixMapTag())))["pfv"] = &create_pfv;
+  original(this, narg, arg, suffix);
+}

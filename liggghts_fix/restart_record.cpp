@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "restart_record.h"
+
+#include "pfv/error.hpp"
+
+#include <cstring>
+
+namespace LAMMPS_NS {
+
+namespace {
+
+constexpr double format_number = 1.0;
+
+class Reader {
+ public:
+  explicit Reader(const char* bytes) : bytes_(bytes) {}
+
+  double next() {
+    double value;
+    std::memcpy(&value, bytes_, sizeof value);  // LIGGGHTS does not promise alignment
+    bytes_ += sizeof value;
+    return value;
+  }
+
+  template <typename T>
+  std::vector<T> list(std::size_t entries) {
+    std::vector<T> values(entries);
+    for (T& value : values) value = static_cast<T>(next());
+    return values;
+  }
+  std::size_t count() { return static_cast<std::size_t>(next()); }
+
+ private:
+  const char* bytes_;
+};
+
+}  // namespace
+
+std::vector<double> pack(const PfvRestartRecord& record) {
+  std::vector<double> data{format_number,
+                           static_cast<double>(record.step),
+                           record.time,
+                           record.flow.time,
+                           record.flow.strain,
+                           static_cast<double>(record.flow.retriangulations),
+                           static_cast<double>(record.steps_since_flow),
+                           record.elapsed};
+  const auto append = [&data](const auto& values) {
+    data.insert(data.end(), values.begin(), values.end());
+  };
+  append(record.last_positions);
+  data.push_back(static_cast<double>(record.flow.pore_pressures.size()));
+  append(record.flow.pore_pressures);
+  data.push_back(static_cast<double>(record.last_grains.tags.size()));
+  append(record.last_grains.tags);
+  append(record.last_grains.places);
+  data.push_back(static_cast<double>(record.written.size()));
+  for (const PfvWrittenStep& one : record.written) {
+    data.push_back(static_cast<double>(one.step));
+    data.push_back(one.time);
+  }
+  return data;
+}
+
+PfvRestartRecord unpack(const char* bytes) {
+  Reader reader(bytes);
+  if (reader.next() != format_number)
+    throw pfv::InputError("the restart file holds this fix in the form of another version; give the "
+                          "fix another ID to start the flow anew");
+  PfvRestartRecord record;
+  record.step = static_cast<std::int64_t>(reader.next());
+  record.time = reader.next();
+  record.flow.time = reader.next();
+  record.flow.strain = reader.next();
+  record.flow.retriangulations = static_cast<std::int64_t>(reader.next());
+  record.steps_since_flow = static_cast<int>(reader.next());
+  record.elapsed = reader.next();
+  for (double& position : record.last_positions) position = reader.next();
+  record.flow.pore_pressures = reader.list<double>(reader.count());
+  const std::size_t grains = reader.count();
+  record.last_grains.tags = reader.list<std::int64_t>(grains);
+  record.last_grains.places = reader.list<double>(3 * grains);
+  record.written.resize(reader.count());
+  for (PfvWrittenStep& one : record.written) {
+    one.step = static_cast<std::int64_t>(reader.next());
+    one.time = reader.next();
+  }
+  return record;
+}
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `fix pfv` puts into a restart file, as one array of numbers.
+#ifndef LMP_PFV_RESTART_RECORD_H
+#define LMP_PFV_RESTART_RECORD_H
+
+#include "grain_exchange.h"
+#include "result_files.h"
+
+#include "pfv/flow.hpp"
+
+#include <array>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+struct PfvRestartRecord {
+  std::int64_t step = 0;
+  double time = 0.0;  ///< LIGGGHTS' simulated time, s
+  pfv::FlowState flow;
+  int steps_since_flow = 0;
+  double elapsed = 0.0;  ///< s, since the last flow step
+  std::array<double, 6> last_positions{};
+  PfvSnapshot last_grains;
+  std::vector<PfvWrittenStep> written;
+};
+
+std::vector<double> pack(const PfvRestartRecord& record);
+/// Throws pfv::InputError for numbers that another version of the fix has written.
+PfvRestartRecord unpack(const char* bytes);
+
+}  // namespace LAMMPS_NS
+
+#endif
