@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sourced by run.sh and test.sh with `root` set to the project's folder: what both need first.
+
+# Installs the packages of debian-packages.txt that are missing; asks for nothing when none is.
+install_packages() {
+  local missing=() package sudo=
+  while read -r package _; do
+    case $package in '' | \#*) continue ;; esac
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
+      missing+=("$package")
+  done < "$root/debian-packages.txt"
+  [ ${#missing[@]} -eq 0 ] && return
+  [ "$(id -u)" -eq 0 ] || sudo=sudo
+  echo "installing: ${missing[*]}"
+  $sudo apt-get update
+  $sudo env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y --no-install-recommends "${missing[@]}"
+}
+
+# Configures build/ and builds the targets given (none: all of them).
+build_project() {
+  cmake -S "$root" -B "$root/build" -G Ninja -DCMAKE_BUILD_TYPE=Release > /dev/null
+  cmake --build "$root/build" ${1:+--target "$@"}
+}

@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Oedometer test: sample, dry test, permeability, coupled run, comparison with Terzaghi.
+
+    run.py [KEY=VALUE...]      called by ./run.sh oedometer [KEY=VALUE...]
+    run.py study               the tables of doc/oedometer.md: sizes, seeds, thresholds, times
+"""
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+SCENE = Path(__file__).resolve().parent
+BIN = Path(os.environ.get("PFV_BIN", SCENE.parents[1] / "build" / "bin"))
+SIDE, DENSITY, CONFINEMENT = 0.1, 2600.0, 76.0e3  # m, kg/m3, Pa
+
+KEYS = {
+    "N": (int, 1000, "grains"),
+    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "LOAD": (float, 5000.0, "step load, Pa"),
+    "VISCOSITY": (float, 0.0, "Pa s; 0: chosen from the grain size"),
+    "TIME_STEP": (float, 0.0, "s; 0: chosen from contact and viscous limit"),
+    "END": (float, 2.6, "duration of the loading, T_v"),
+    "RETRIANGULATE": (float, 0.01, "pore strain"),
+    "OUT": (str, "post/sample", "where results go, without ending"),
+    "KEEP": (int, 0, "1: take the sample, dry test and permeability that OUT holds"),
+    "SMALL": (int, 0, "1: seconds instead of minutes, with wider checks"),
+}
+
+
+class Failure(Exception):
+    """What went wrong and what to do, in one line."""
+
+
+def parse(words):
+    settings = {key: default for key, (_, default, _) in KEYS.items()}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if not equals or key not in KEYS:
+            known = ", ".join(f"{k} ({what})" for k, (_, _, what) in KEYS.items())
+            raise SystemExit(f"oedometer: '{word}' is not KEY=VALUE with a known key: {known}")
+        try:
+            settings[key] = KEYS[key][0](value)
+        except ValueError:
+            raise SystemExit(f"oedometer: {key} needs a number, not '{value}'") from None
+    if settings["N"] < 100 or settings["SEED"] < 1 or settings["LOAD"] <= 0:
+        raise SystemExit("oedometer: N must be at least 100, SEED at least 1, LOAD above 0")
+    return settings
+
+
+def primes(seed):
+    """Five distinct primes above 10000, as LIGGGHTS wants them, others for each seed."""
+    found, candidate = [], 10000 + 1000 * seed
+    while len(found) < 5:
+        candidate += 1
+        if all(candidate % d for d in range(2, int(candidate**0.5) + 1)):
+            found.append(candidate)
+    return found
+
+
+def solid_fraction(grains):
+    """Fraction of the 0.1 m cube that the grains fill at 76 kPa, walls included: fitted to samples
+    of 1000 and 5000 grains, so that the sample is a cube within 1 %."""
+    return 0.654 - 0.49 * grains ** (-1.0 / 3.0)
+
+
+def mean_radius(grains):
+    mean_cube = (0.9**3 + 1.0 + 1.1**3) / 3.0
+    volume = solid_fraction(grains) * SIDE**3 / grains
+    return (volume / (4.0 / 3.0 * 3.141592653589793 * mean_cube)) ** (1.0 / 3.0)
+
+
+def viscosity_for(grains, small):
+    """K/mu independent of the grain size. README.md has the two limits between which this lies."""
+    return (5.0 if small else 10.0) * (mean_radius(grains) / 3.07e-3) ** 2
+
+
+def viscous_limit(grains, viscosity):
+    """Largest stable step of the explicit coupling: the papers' pi rho d^2/(1200 mu) times 0.25,
+    measured for clusters of grains in dense packings. Fix pfv prints the limit of this very sample."""
+    diameter = 1.8 * mean_radius(grains)
+    return 0.25 * 3.141592653589793 * DENSITY * diameter**2 / (1200.0 * viscosity)
+
+
+class Progress:
+    """One line about every three seconds: percent, simulated time, estimated time left."""
+
+    def __init__(self, stage, first, last, step_time):
+        self.stage, self.first, self.last, self.step_time = stage, first, last, step_time
+        self.start = self.shown = time.monotonic()
+
+    def at(self, step):
+        now = time.monotonic()
+        if now - self.shown < 3.0 or step <= self.first:
+            return
+        self.shown = now
+        done = (step - self.first) / (self.last - self.first)
+        left = (now - self.start) * (1.0 - done) / done
+        print(f"  {self.stage:<12s} {100 * done:3.0f} %   simulated {step * self.step_time:.4f} s   "
+              f"about {left:.0f} s left", flush=True)
+
+
+def child_seconds():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def liggghts(script, variables, log, progress=None):
+    """Runs a script; returns what it printed behind the word `oedometer`, by first word, and the
+    CPU seconds."""
+    program = BIN / "liggghts-pfv"
+    if not program.exists():
+        raise Failure(f"{program.name} is not built; run ./run.sh, which builds it")
+    command = ["stdbuf", "-oL", str(program), "-in", script, "-log", log + ".log"]
+    for key, value in variables.items():
+        command += ["-var", key, f"{value:.17g}" if isinstance(value, float) else str(value)]
+    before = child_seconds()
+    said, tail = {}, []
+    process = subprocess.Popen(command, cwd=SCENE, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True, errors="replace")
+    with open(SCENE / (log + ".txt"), "w") as copy:
+        for line in process.stdout:
+            copy.write(line)
+            tail = (tail + [line.strip()])[-40:]
+            words = line.split()
+            if words[:1] == ["oedometer"]:
+                said[words[1]] = words[2:]
+            elif progress and words and words[0].isdigit():
+                progress.at(int(words[0]))
+    if process.wait() != 0:
+        errors = [line for line in tail if "ERROR" in line] or tail[-1:]
+        raise Failure(f"{script} stopped: {errors[0] if errors else 'no message'} "
+                      f"(see {log}.txt)")
+    return said, child_seconds() - before
+
+
+def permeability(dump, height, viscosity, report):
+    """Permeability (m2) of a dump with frictionless side walls, as in the coupled run."""
+    command = [str(BIN / "pfv"), "solve", "--packing", dump, "--wall", "symmetry",
+               "--box", "0", str(SIDE), "0", str(SIDE), "0", f"{height:.17g}",
+               "--face", "zlo:pressure=5000", "--face", "zhi:pressure=0",
+               "--viscosity", f"{viscosity:.17g}", "--report", report]
+    done = subprocess.run(command, cwd=SCENE, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Failure(f"pfv solve on {dump}: {done.stderr.strip()}")
+    return json.loads((SCENE / report).read_text())["permeability"]
+
+
+def prepare(settings):
+    """Sample and dry test. Returns what they measured."""
+    out, grains = settings["OUT"], settings["N"]
+    common = {"N": grains, "phi": solid_fraction(grains), "F0": CONFINEMENT * SIDE**2,
+              "out": out}
+    print(f"sample of {grains} grains, seed {settings['SEED']}, under {CONFINEMENT / 1e3:.0f} kPa",
+          flush=True)
+    seeds = {f"s{k + 1}": prime for k, prime in enumerate(primes(settings["SEED"]))}
+    said, cpu = liggghts("in.prepare", {**common, **seeds}, out + "_prepare",
+                         Progress("sample", 0, 20001, 0.0))
+    sample = {"step": int(said["sample"][0]), "height": float(said["sample"][1]),
+              "contact_step": float(said["sample"][2]), "cpu_prepare": cpu}
+    force = settings["LOAD"] * SIDE**2
+    print("dry test: load and unload", flush=True)
+    said, cpu = liggghts("in.dry", {**common, "dF": force}, out + "_dry")
+    height = {name: float(said[name][0]) for name in ("rest", "early", "loaded", "unloaded")}
+    loading = (height["rest"] - height["loaded"]) / height["rest"]
+    unloading = (height["unloaded"] - height["loaded"]) / height["rest"]
+    sample.update(dry_height=height, dry_strain=loading, dry_strain_unloading=unloading,
+                  dry_drift=(height["early"] - height["loaded"]) / (height["rest"] - height["loaded"]),
+                  E_oed=settings["LOAD"] / loading, E_oed_unloading=settings["LOAD"] / unloading,
+                  cpu_dry=cpu, cpu_dry_step=cpu / 14000)
+    return sample
+
+
+def measure_permeability(settings, sample, viscosity):
+    out, height = settings["OUT"], sample["dry_height"]
+    sample["K"] = permeability(out + ".dump", sample["height"], viscosity, out + "_K.json")
+    sample["K_loaded"] = permeability(out + "_loaded.dump", height["loaded"], viscosity,
+                                      out + "_K_loaded.json")
+
+
+def plan(settings, sample):
+    """Viscosity, time step and numbers of steps of the coupled run."""
+    grains = settings["N"]
+    viscosity = settings["VISCOSITY"] or viscosity_for(grains, settings["SMALL"])
+    limit = viscous_limit(grains, viscosity)
+    step = settings["TIME_STEP"] or min(sample["contact_step"], 0.8 * limit)
+    if "K" not in sample:
+        measure_permeability(settings, sample, viscosity)
+    consolidation = sample["K"] / viscosity * sample["E_oed"]  # C_v, m2/s
+    unit = (sample["height"] / 2.0) ** 2 / consolidation  # time at which T_v = 1, s
+    stride = max(1, round(0.1 * unit / step))
+    every = max(1, round(0.0005 * unit / step))
+    first = -(-(sample["step"] + 500) // stride) * stride
+    return {"viscosity": viscosity, "time_step": step, "C_v": consolidation, "unit": unit,
+            "stride": stride, "every": every, "rest_to": first,
+            "steps": round(settings["END"] * unit / step), "viscous_limit_estimate": limit}
+
+
+def couple(settings, sample, planned):
+    grains, out = settings["N"], settings["OUT"]
+    for old in (SCENE / out).parent.glob(Path(out).name + "_[cg]*.txt"):
+        if re.search(r"_(contacts|grains)\.\d+\.txt$", old.name):
+            old.unlink()
+    variables = {key: planned[key] for key in
+                 ("viscosity", "time_step", "stride", "every", "rest_to", "steps")}
+    variables.update(N=grains, phi=solid_fraction(grains), F0=CONFINEMENT * SIDE**2,
+                     dF=settings["LOAD"] * SIDE**2, out=out,
+                     retriangulate=settings["RETRIANGULATE"])
+    first, last = sample["step"], planned["rest_to"] + planned["steps"]
+    _, cpu = liggghts("in.oedometer", variables, out + "_coupled",
+                      Progress("consolidation", first, last, planned["time_step"]))
+    return {"cpu_coupled": cpu, "cpu_coupled_step": cpu / (last - first)}
+
+
+def run(settings):
+    """All stages; returns the measured figures, which it also writes to OUT_summary.json."""
+    import analyse
+    store = SCENE / (settings["OUT"] + "_measured.json")
+    if settings["KEEP"] and store.exists():
+        sample = json.loads(store.read_text())
+    else:
+        sample = prepare(settings)
+    planned = plan(settings, sample)
+    store.write_text(json.dumps(sample, indent=1))
+    print(f"consolidation: viscosity {planned['viscosity']:.3g} Pa s, "
+          f"{planned['steps']} steps of {planned['time_step']:.3g} s, "
+          f"T_v = 1 at {planned['unit']:.4f} s", flush=True)
+    cost = couple(settings, sample, planned)
+    figures = {**settings, **sample, **planned, **cost}
+    (SCENE / (settings["OUT"] + "_run.json")).write_text(json.dumps(figures, indent=1))
+    return analyse.analyse(SCENE / settings["OUT"])
+
+
+def main(words):
+    sys.path.insert(0, str(SCENE))
+    try:
+        if words == ["study"]:
+            import study
+            study.study(run, parse)
+            return 0
+        summary = run(parse(words))
+    except Failure as failure:
+        print(f"oedometer: {failure}", file=sys.stderr)
+        return 1
+    return 0 if summary["passed"] else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

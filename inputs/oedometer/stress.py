@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Vertical effective stress from the contact forces of LIGGGHTS' dumps."""
+import numpy as np
+
+
+def read(path):
+    """Columns of a dump with one snapshot."""
+    return np.loadtxt(path, skiprows=9)
+
+
+def vertical_moments(base, step):
+    """z, radius and V sigma_zz of each grain: sum of -x_z F_z over its contacts and walls (thesis
+    eq. 2.18), compression positive."""
+    grains = read(base.parent / f"{base.name}_grains.{step}.txt")
+    contacts = read(base.parent / f"{base.name}_contacts.{step}.txt")
+    row = {int(tag): k for k, tag in enumerate(grains[:, 0])}
+    first = np.array([row[int(tag)] for tag in contacts[:, 0]])
+    second = np.array([row[int(tag)] for tag in contacts[:, 1]])
+    z, radius = grains[:, 1], grains[:, 2]
+    # The contact lies on the line of centres, so that arms are in proportion to the radii.
+    arm = (z[second] - z[first]) / (radius[first] + radius[second])
+    force = contacts[:, -1]
+    moment = np.zeros(len(grains))
+    np.add.at(moment, first, -arm * radius[first] * force)
+    np.add.at(moment, second, -arm * radius[second] * force)
+    moment += radius * grains[:, 3] - radius * grains[:, 4]
+    return z, radius, moment
+
+
+def share_below(z, radius, height):
+    """Fraction of each sphere's volume below a height."""
+    depth = np.clip((height - z + radius) / radius, 0.0, 2.0)
+    return depth**2 * (3 - depth) / 4
+
+
+def slice_stress(base, step, edges, area):
+    """sigma_zz averaged over horizontal slices, each grain sharing itself among them by volume; the
+    mean over the grains times (1 - n) is the sum of V sigma over the slice's volume."""
+    z, radius, moment = vertical_moments(base, step)
+    below = np.array([share_below(z, radius, height) for height in edges])
+    below[0], below[-1] = 0.0, 1.0
+    return (np.diff(below, axis=0) @ moment) / (np.diff(edges) * area)
+
+
+def profile(run, T_v, area=0.01):
+    """Relative heights, effective and total stress increments at about T_v, divided by the load."""
+    f = run.figures
+    slices = round(run.rest_height / (1.1e-2 * (1000 / f["N"]) ** (1 / 3)))  # one grain high
+    edges = np.linspace(0.0, run.rest_height, slices + 1)
+    number = max(1, round(T_v * f["unit"] / f["time_step"] / f["stride"]))
+    before = slice_stress(run.base, f["rest_to"], edges, area)
+    after = slice_stress(run.base, f["rest_to"] + number * f["stride"], edges, area)
+    heights = (edges[1:] + edges[:-1]) / 2 / run.rest_height
+    effective = (after - before) / run.load
+    p, _ = run.at(number * f["stride"] * f["time_step"] / f["unit"])
+    return heights, effective, effective + np.interp(heights, run.heights, p)
