@@ -10,7 +10,8 @@
 
 namespace pfv {
 
-/// Symmetric positive definite matrix in compressed rows: both triangles, columns sorted in each row.
+/// Symmetric positive definite matrix in compressed rows: both triangles, diagonal present, columns
+/// sorted in each row.
 struct SymmetricMatrix {
   std::vector<int> row_begin{0};  ///< n + 1
   std::vector<int> column;
@@ -22,14 +23,17 @@ struct SymmetricMatrix {
 /// r = A x.
 Eigen::VectorXd multiply(const SymmetricMatrix& matrix, const Eigen::VectorXd& x);
 
-/// One direct solver. Call order: order, factor (again after new values on the same pattern), solve.
-/// Every method throws SolverError with the solver's name and its own code or words.
+/// One direct solver. Call order: order, factor (again after new values on the same pattern),
+/// solve as often as there are right-hand sides. No unknowns are fine: nothing is done.
+/// Same matrix and b, same bytes. Prints nothing. Every method throws SolverError, one line with the
+/// solver's name: a call out of order, a matrix that is singular, not positive definite (cholmod) or
+/// not finite, a solution that is not finite, no memory.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   /// Fill-reducing ordering and symbolic factorisation of the pattern.
   virtual void order(const SymmetricMatrix& matrix) = 0;
-  /// Numeric factorisation; `matrix` has the pattern given to `order`.
+  /// Numeric factorisation; `matrix` has the pattern given to `order`, else SolverError.
   virtual void factor(const SymmetricMatrix& matrix) = 0;
   /// x = A^-1 b; both of length n.
   virtual void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Included by amesos2_solver.cpp alone: it draws in Trilinos.
+#pragma once
+
+#include "solve/cholmod_factor.hpp"
+
+#include <Amesos2.hpp>
+#include <Amesos2_SolverCore_def.hpp>  // the library instantiates it for its own solvers only
+#include <utility>
+#include <vector>
+
+namespace pfv {
+
+/// CHOLMOD's supernodal LL^T as an Amesos2 solver: Debian's Amesos2 is built without it. For one
+/// rank, where matrix and vectors are used where they lie, without a copy.
+template <class Matrix, class Vector>
+class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, Vector> {
+  using Base = Amesos2::SolverCore<pfv::CholmodSupernodal, Matrix, Vector>;
+  friend Base;
+
+ public:
+  static constexpr const char* name = "CholmodSupernodal";
+
+  /// `permutation`: see CholmodFactor::analyze.
+  CholmodSupernodal(Teuchos::RCP<const Matrix> matrix, std::vector<int> permutation)
+      : Base(matrix, Teuchos::null, Teuchos::null), permutation_(std::move(permutation)) {}
+
+ private:
+  using Vectors = Amesos2::MultiVecAdapter<Vector>;
+  using Pointer = Amesos2::Util::vector_pointer_helper<Vectors, Vector>;
+  using HostSpace = Kokkos::DefaultHostExecutionSpace;
+
+  int preOrdering_impl() { return 0; }  // the permutation is given
+
+  int symbolicFactorization_impl() {
+    factor_.analyze(rows(), permutation_);
+    return 0;
+  }
+
+  int numericFactorization_impl() {
+    factor_.factorize(rows());
+    this->setNnzLU(2 * factor_.entries());
+    return 0;
+  }
+
+  int solve_impl(const Teuchos::Ptr<Vectors> x, const Teuchos::Ptr<const Vectors> b) const {
+    factor_.solve(Pointer::get_pointer_to_vector(b), Pointer::get_pointer_to_vector(x));
+    return 0;
+  }
+
+  bool matrixShapeOK_impl() const {
+    return this->matrixA_->getComm()->getSize() == 1 &&
+           this->matrixA_->getGlobalNumRows() == this->matrixA_->getGlobalNumCols();
+  }
+
+  void setParameters_impl(const Teuchos::RCP<Teuchos::ParameterList>&) {}
+
+  Teuchos::RCP<const Teuchos::ParameterList> getValidParameters_impl() const {
+    return Teuchos::parameterList();
+  }
+
+  bool loadA_impl(Amesos2::EPhase phase) {
+    if (phase == Amesos2::SOLVE) return false;
+    if (phase != Amesos2::NUMFACT) {
+      this->matrixA_->returnRowPtr_kokkos_view(row_begin_);
+      this->matrixA_->returnColInd_kokkos_view(column_);
+    }
+    this->matrixA_->returnValues_kokkos_view(value_);
+    return true;
+  }
+
+  SymmetricRows rows() const {
+    return {static_cast<int>(this->globalNumRows_), row_begin_.data(), column_.data(),
+            value_.data()};
+  }
+
+  std::vector<int> permutation_;
+  Kokkos::View<int*, HostSpace> row_begin_;
+  Kokkos::View<int*, HostSpace> column_;
+  Kokkos::View<double*, HostSpace> value_;
+  mutable CholmodFactor factor_;
+};
+
+}  // namespace pfv
+
+namespace Amesos2 {
+template <>
+struct solver_traits<pfv::CholmodSupernodal> {
+  using supported_scalars = Meta::make_list1<double>;
+};
+}  // namespace Amesos2

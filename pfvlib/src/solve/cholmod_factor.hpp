@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cholmod.h>
+#include <cstddef>
+#include <vector>
+
+namespace pfv {
+
+/// Non-owning view of a symmetric matrix in compressed rows with both triangles, columns sorted.
+struct SymmetricRows {
+  int size = 0;
+  const int* row_begin = nullptr;
+  const int* column = nullptr;
+  const double* value = nullptr;  ///< may be null where only the pattern is wanted
+};
+
+/// The supernodal factorisation P A P^T = L L^T of CHOLMOD and its workspace.
+/// Silent; every failure is a SolverError.
+class CholmodFactor {
+ public:
+  CholmodFactor();
+  ~CholmodFactor();
+  CholmodFactor(const CholmodFactor&) = delete;
+  CholmodFactor& operator=(const CholmodFactor&) = delete;
+
+  /// Symbolic factorisation. `permutation` lists the rows in the order of their elimination and is
+  /// postordered here; empty: CHOLMOD's own AMD.
+  void analyze(const SymmetricRows& matrix, const std::vector<int>& permutation);
+  /// L for the values of a matrix with the analysed pattern. Throws where the matrix is not
+  /// positive definite, or so nearly singular that rounding has used up every digit of a pivot.
+  void factorize(const SymmetricRows& matrix);
+  /// x = A^-1 b. The workspace is kept from call to call.
+  void solve(const double* b, double* x);
+  /// Entries of L, with the zeros that relaxed supernodes take in.
+  std::size_t entries() const { return static_cast<std::size_t>(common_.lnz); }
+
+ private:
+  void require_success(const char* phase) const;
+  void require_positive_pivots(const SymmetricRows& matrix) const;
+  [[noreturn]] void throw_not_positive_definite(int row) const;
+
+  mutable cholmod_common common_;
+  cholmod_factor* factor_ = nullptr;
+  cholmod_dense* permuted_workspace_ = nullptr;
+  cholmod_dense* supernode_workspace_ = nullptr;
+};
+
+}  // namespace pfv
