@@ -31,6 +31,8 @@ struct FlowState {
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
 };
 
+struct FlowData;
+
 /// Flow through the pores of a moving packing: the one owner of state, who alone knows what is stale.
 ///
 ///     pfv::Flow flow(box, fluid, options);
@@ -95,7 +97,7 @@ class Flow {
   double plane_pressure(int axis, double position) const;
   /// Mean pressure over all pores, weighted with their volume, Pa.
   double mean_pressure() const;
-  /// sqrt-free estimate of the explicit limit dt < 2 / lambda_max(M^-1 S G^-1 E), s, by power
+  /// The limit of the explicit coupling, dt < 2 / lambda_max(M^-1 S G^-1 E), s, by power
   /// iteration on the kept factor (masses in kg, one a sphere of the last packing). Infinite where
   /// nothing is unknown. Cost: about 20 solves for a new network, none when it was asked before.
   double time_step_limit(const Eigen::VectorXd& masses);
@@ -105,9 +107,11 @@ class Flow {
 
   /// The network in use: cells refer to spheres by their column in the packing it was built from.
   const PoreNetwork& network() const;
-  /// Conductance g/L of each throat (m³/(Pa s)), fluid volume and volume of each pore (m³).
+  /// Conductance g/L of each throat, m³/(Pa s).
   const std::vector<double>& throat_conductances() const;
-  const std::vector<double>& throat_fluxes() const;
+  /// Flow rate of each throat, from its first pore to its second, m³/s.
+  std::vector<double> throat_fluxes() const;
+  /// Volume of each pore's fluid, m³.
   Eigen::VectorXd pore_volumes() const;
 
   /// Balances, permeability, counts, times of everything done so far. Cost: one pass over the network
@@ -115,8 +119,7 @@ class Flow {
   Report report() const;
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<FlowData> data_;
 };
 
 }  // namespace pfv

@@ -21,8 +21,11 @@ inline Vertex wall_vertex(int face) { return -1 - face; }
 /// that share one dual vertex (cospherical sets: they hold one pressure). A *facet* is shared by two
 /// cells; a *throat* is the planar polygon between two pores: one facet, or several pieces of it.
 struct PoreNetwork {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< lower corner of the box: all places below
+                                                     ///< are relative to it, m
+
   // one entry a cell
-  std::vector<std::array<Vertex, 4>> cell_vertices;  ///< positively oriented
+  std::vector<std::array<Vertex, 4>> cell_vertices;  ///< spheres first, positively oriented
   std::vector<std::array<int, 4>> cell_neighbours;   ///< opposite each vertex; -1 outside the box
   Eigen::Matrix3Xd cell_centres;                     ///< dual vertex: equal power to its vertices, m
   std::vector<int> cell_pore;

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/flow_data.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pfv {
+
+namespace {
+
+/// Flow rate into the box through each pore: what its throats carry away, what fills its growing
+/// volume and what its compression stores. Meaningful for pores on an open boundary.
+Eigen::VectorXd pore_inflows(const FlowData& flow) {
+  const PoreNetwork& network = flow.built->network;
+  Eigen::VectorXd inflow = flow.rates;
+  if (flow.storage.size() > 0)
+    inflow.array() +=
+        flow.storage.array() * (flow.pressures.array() - flow.previous_pressures.array());
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    const double q = flow.built->conductances.value[t] *
+                     (flow.relative_pressures[i] - flow.relative_pressures[j]);
+    inflow[i] += q;
+    inflow[j] -= q;
+  }
+  return inflow;
+}
+
+struct Totals {
+  double inflow = 0.0, outflow = 0.0, gross = 0.0;
+};
+
+Totals boundary_totals(const FlowData& flow) {
+  const std::vector<double> inflows = contact_inflows(flow);
+  const auto& contacts = flow.built->boundaries.contacts;
+  std::vector<double> of_boundary(6 + flow.box.patches.size(), 0.0);
+  Totals totals;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    of_boundary[contacts[c].boundary] += inflows[c];
+    totals.gross += std::abs(inflows[c]);
+  }
+  for (const double q : of_boundary) (q > 0.0 ? totals.inflow : totals.outflow) += std::abs(q);
+  return totals;
+}
+
+/// The net of all fluxes over the largest of them. Where inflow and outflow cancel within each
+/// boundary (a wave on one face) their gross sum takes its place.
+double mass_error(const Totals& totals, double volume_rate, double storage_rate) {
+  const double largest =
+      std::max({totals.inflow, totals.outflow, std::abs(volume_rate), std::abs(storage_rate)});
+  const double scale = largest > 1e-9 * totals.gross ? largest : totals.gross;
+  const double net = totals.inflow - totals.outflow - volume_rate - storage_rate;
+  return scale > 0.0 ? net / scale : 0.0;
+}
+
+/// mu Q L / (dp S) between two opposite open faces (method: Darcy's law); absent where the flow is not
+/// steady or not one-dimensional.
+std::optional<double> permeability(const FlowData& flow, const Totals& totals) {
+  if (flow.moving || flow.storage.size() > 0 || !flow.box.patches.empty()) return {};
+  int open_axis = -1, open = 0;
+  for (const Face face : all_faces) {
+    const Boundary& boundary = flow.box[face].boundary;
+    if (boundary.kind == Boundary::Kind::sealed) continue;
+    if (boundary.profile) return {};
+    ++open;
+    if (open == 1) open_axis = axis_of(face);
+    if (axis_of(face) != open_axis) return {};
+  }
+  if (open != 2) return {};
+  std::array<double, 2> pressure{0.0, 0.0};
+  for (const auto& contact : flow.built->boundaries.contacts)
+    if (contact.face / 2 == open_axis)
+      pressure[contact.face % 2] = flow.relative_pressures[contact.pore];
+  const double difference = std::abs(pressure[0] - pressure[1]);
+  if (!(difference > 0.0)) return {};
+  const double length = flow.box.upper[open_axis] - flow.box.lower[open_axis];
+  const double area = flow.box.area(static_cast<Face>(2 * open_axis));
+  const double rate = 0.5 * (totals.inflow + totals.outflow);
+  return flow.fluid.viscosity * rate * length / (difference * area);
+}
+
+double force_balance_error(const FlowData& flow) {
+  if (flow.fluid_forces.cols() == 0) return 0.0;
+  const int spheres = flow.built->grains.spheres.size();
+  Eigen::Vector3d sum = flow.fluid_forces.leftCols(spheres).rowwise().sum();
+  double largest_area = 0.0;
+  for (const Face face : all_faces) {
+    const FaceResult& result = flow.faces[static_cast<int>(face)];
+    sum += result.force_pressure + result.force_viscous;
+    largest_area = std::max(largest_area, flow.box.area(face));
+  }
+  const double largest_pressure =
+      flow.pressures.size() > 0 ? flow.pressures.cwiseAbs().maxCoeff() : 0.0;
+  return largest_pressure > 0.0 ? sum.norm() / (largest_pressure * largest_area) : 0.0;
+}
+
+double residual(const FlowData& flow) {
+  const double scale = flow.right_side.norm();
+  if (flow.right_side.size() == 0 || scale == 0.0) return 0.0;
+  return (flow.right_side - multiply(flow.built->system.matrix, flow.solution)).norm() / scale;
+}
+
+std::int64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+}
+
+void fill_geometry(Report& report, FlowData& flow) {
+  BuiltNetwork& built = *flow.built;
+  if (!built.solid) built.solid = solid_union(built.network, built.grains.spheres);
+  report.spheres = static_cast<std::int64_t>(flow.packing_ids.size());
+  report.hidden = static_cast<std::int64_t>(built.network.hidden.size());
+  report.outside = report.spheres - built.grains.spheres.size();
+  report.pores = built.network.pores();
+  report.unknowns = built.unknowns.count;
+  const double volume = built.grains.spheres.edges.prod();
+  report.pore_volume = volume - built.solid->volume;
+  report.porosity = report.pore_volume / volume;
+  report.solid_area = built.solid->area;
+}
+
+}  // namespace
+
+std::vector<double> contact_inflows(const FlowData& flow) {
+  const auto& contacts = flow.built->boundaries.contacts;
+  const Eigen::VectorXd inflow = pore_inflows(flow);
+  const auto carries = [&](const PoreBoundaries::Contact& contact) {
+    const Boundary::Kind kind = boundary_of(flow.box, contact.boundary).kind;
+    const int unknown = flow.built->unknowns.of_pore[contact.pore];
+    if (unknown == Unknowns::imposed) return kind == Boundary::Kind::pressure;
+    return kind == Boundary::Kind::flux &&
+           flow.built->unknowns.of_boundary[contact.boundary] == unknown;
+  };
+  std::vector<double> result(contacts.size(), 0.0);
+  for (std::size_t first = 0; first < contacts.size();) {
+    std::size_t last = first;
+    double area = 0.0;
+    for (; last < contacts.size() && contacts[last].pore == contacts[first].pore; ++last)
+      if (carries(contacts[last])) area += flow.built->base_area[last];
+    // a pore on several open faces: by its base on each
+    for (std::size_t c = first; c < last; ++c)
+      if (carries(contacts[c]) && area > 0.0)
+        result[c] = inflow[contacts[c].pore] * flow.built->base_area[c] / area;
+    first = last;
+  }
+  return result;
+}
+
+std::array<FaceResult, 6> face_results(const FlowData& flow) {
+  std::array<FaceResult, 6> faces;
+  const auto& contacts = flow.built->boundaries.contacts;
+  const std::vector<double> inflows = contact_inflows(flow);
+  const int spheres = flow.built->grains.spheres.size();
+  std::array<double, 6> relative{};
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    faces[contacts[c].face].flux += inflows[c];
+    relative[contacts[c].face] +=
+        flow.relative_pressures[contacts[c].pore] * flow.built->base_area[c];
+  }
+  const Eigen::Vector3d edges = flow.built->grains.spheres.edges;
+  for (const Face face : all_faces) {
+    const int f = static_cast<int>(face), axis = axis_of(face);
+    const double area = edges[(axis + 1) % 3] * edges[(axis + 2) % 3];
+    faces[f].force_pressure = (relative[f] + flow.reference * area) * outward_normal(face);
+    if (flow.fluid_forces.cols() > 0) faces[f].force_viscous = flow.fluid_forces.col(spheres + f);
+  }
+  return faces;
+}
+
+Report make_report(FlowData& flow) {
+  Report report;
+  fill_geometry(report, flow);
+  const Totals totals = boundary_totals(flow);
+  report.inflow = totals.inflow;
+  report.outflow = totals.outflow;
+  report.volume_rate_sum = flow.rates.sum();
+  if (flow.storage.size() > 0)
+    report.storage_rate = flow.storage.dot(flow.pressures - flow.previous_pressures);
+  report.mass_error = mass_error(totals, report.volume_rate_sum, report.storage_rate);
+  report.permeability = permeability(flow, totals);
+  if (flow.forces.total.cols() > 0) report.force_sum = flow.forces.total.rowwise().sum();
+  report.force_balance_error = force_balance_error(flow);
+  report.residual = residual(flow);
+  report.solver = flow.built->solver->name();
+  report.ordering = name_of(resolved(flow.options.solver, flow.options.ordering));
+  report.conductance = name_of(flow.options.conductance);
+  report.faces = flow.faces;
+  report.counts = flow.counts;
+  report.seconds = flow.seconds;
+  report.wall_seconds.total = flow.wall_total;
+  report.peak_memory_bytes = peak_memory();
+  return report;
+}
+
+}  // namespace pfv

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "coupling/grains.hpp"
+#include "network/pore_boundaries.hpp"
+#include "physics/conductances.hpp"
+#include "physics/force_matrix.hpp"
+#include "physics/solid_union.hpp"
+#include "physics/throats.hpp"
+#include "physics/volume_rates.hpp"
+#include "solve/linear_solver.hpp"
+#include "solve/pressure_system.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace pfv {
+
+/// All that is derived from one packing and kept until the next triangulation. What is optional is
+/// made when a step first needs it.
+struct BuiltNetwork {
+  ActiveGrains grains;
+  PoreNetwork network;
+  PoreBoundaries boundaries;
+  Throats throats;
+  Conductances conductances;
+  std::vector<double> base_area;  ///< one entry a boundary contact
+  Unknowns unknowns;
+  PressureSystem system;
+  std::unique_ptr<LinearSolver> solver;
+  double storage_dt = 0.0;  ///< time step whose storage term is in the factor
+
+  std::optional<VolumeRateMatrix> volume_rate_matrix;
+  std::optional<ForceMatrix> force_matrix;
+  std::optional<ForceMatrix> pressure_force_matrix;
+  std::optional<SurfacePressure> surface_pressure;
+  std::optional<SolidUnion> solid;
+  std::optional<double> time_step_limit;
+  std::vector<double> strain_volume;  ///< volume that a pore's strain refers to, bounded below
+};
+
+/// Fluid volume of a pore, but at least 1 % of its smallest sphere: about a tenth of what a pore
+/// between such spheres holds. Without a bound a nearly empty pore would ask for a new network at
+/// every step (thesis eqs. 5.13-5.14 divide by the pore's volume).
+std::vector<double> strain_volumes(const PoreNetwork& network, const Throats& throats,
+                                   const Spheres& spheres);
+
+/// Fluid volume V^f for the storage of a compressible fluid: the pore's own, but at least 1 % of its
+/// whole volume (overlaps can make it negative).
+Eigen::VectorXd storage_volumes(const Throats& throats);
+
+}  // namespace pfv

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pfv/flow.hpp"
+
+#include "coupling/flow_data.hpp"
+#include "network/pore_network.hpp"
+#include "pfv/error.hpp"
+#include "physics/time_step_limit.hpp"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace pfv {
+
+namespace {
+
+/// What a change of leads to a new network: everything of a boundary but its values.
+bool same_kinds(const Box& a, const Box& b) {
+  if (a.patches.size() != b.patches.size()) return false;
+  for (std::size_t i = 0; i < a.patches.size(); ++i)
+    if (a.patches[i].face != b.patches[i].face ||
+        a.patches[i].rectangle != b.patches[i].rectangle ||
+        a.patches[i].boundary.kind != b.patches[i].boundary.kind)
+      return false;
+  for (int f = 0; f < 6; ++f)
+    if (a.faces[f].wall != b.faces[f].wall ||
+        a.faces[f].boundary.kind != b.faces[f].boundary.kind)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+Flow::Flow(Box box, Fluid fluid, Options options) : data_(std::make_unique<FlowData>()) {
+  check(box);
+  check(fluid);
+  check(options);
+  data_->box = std::move(box);
+  data_->fluid = fluid;
+  data_->options = options;
+}
+
+Flow::~Flow() = default;
+Flow::Flow(Flow&&) noexcept = default;
+Flow& Flow::operator=(Flow&&) noexcept = default;
+
+const Forces& Flow::step(const Packing& packing, double dt) {
+  if (!(dt > 0.0) || !std::isfinite(dt))
+    throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
+  return data_->compute(packing, dt, true);
+}
+
+const Forces& Flow::evaluate(const Packing& packing, double dt) {
+  if (!(dt >= 0.0) || !std::isfinite(dt))
+    throw InputError("the time step is " + std::to_string(dt) + " s; it must be >= 0 and finite");
+  return data_->compute(packing, dt, false);
+}
+
+void Flow::rebuild() { data_->stale = true; }
+
+void Flow::set_box(const Box& box) {
+  check(box);
+  if (!same_kinds(data_->box, box)) data_->stale = true;
+  data_->box = box;
+}
+
+const Box& Flow::box() const { return data_->box; }
+const Fluid& Flow::fluid() const { return data_->fluid; }
+const Options& Flow::options() const { return data_->options; }
+
+void Flow::set_retriangulation_strain(double strain) {
+  Options changed = data_->options;
+  changed.retriangulation_strain = strain;
+  check(changed);
+  data_->options = changed;
+}
+
+double Flow::time() const { return data_->time; }
+double Flow::strain() const { return data_->strain; }
+
+FlowState Flow::state() const {
+  const Eigen::VectorXd& p = data_->old_pressures;
+  return {data_->time, data_->strain, data_->retriangulations,
+          std::vector<double>(p.data(), p.data() + p.size())};
+}
+
+void Flow::set_state(FlowState state) {
+  data_->time = state.time;
+  data_->strain = state.strain;
+  data_->retriangulations = state.retriangulations;
+  data_->pending_pressures = std::move(state.pore_pressures);
+}
+
+const Forces& Flow::forces() const {
+  data_->require_result();
+  return data_->forces;
+}
+
+const std::array<FaceResult, 6>& Flow::faces() const {
+  data_->require_result();
+  return data_->faces;
+}
+
+const Eigen::VectorXd& Flow::pore_pressures() const {
+  data_->require_result();
+  return data_->pressures;
+}
+
+double Flow::pressure_at(const Eigen::Vector3d& place) const {
+  data_->require_result();
+  const BuiltNetwork& built = *data_->built;
+  const Spheres& spheres = built.grains.spheres;
+  const Eigen::Vector3d relative = place - built.network.origin;
+  if (built.network.cells() == 0 || !(relative.array() >= 0.0).all() ||
+      !(relative.array() <= spheres.edges.array()).all())
+    throw InputError("no pressure at a place outside the box (or in a box without grains)");
+  const int cell = locate(built.network, spheres, relative, 0);
+  return data_->pressures[built.network.cell_pore[cell]];
+}
+
+double Flow::plane_pressure(int axis, double position) const {
+  data_->require_result();
+  const BuiltNetwork& built = *data_->built;
+  const Spheres& spheres = built.grains.spheres;
+  const double relative = position - built.network.origin[axis];
+  const auto coordinate = [&](Vertex vertex) {
+    return wall_number(vertex) % 2 ? spheres.edges[axis] : 0.0;
+  };
+  std::set<int> cut;
+  for (int c = 0; c < built.network.cells(); ++c) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vertex vertex : built.network.cell_vertices[c]) {
+      if (is_wall(vertex) && wall_number(vertex) / 2 != axis) continue;
+      const double x = is_wall(vertex) ? coordinate(vertex) : spheres.centres(axis, vertex);
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    if (low <= relative && relative <= high) cut.insert(built.network.cell_pore[c]);
+  }
+  if (cut.empty())
+    throw InputError("the plane at " + std::to_string(position) + " m cuts no pore");
+  double sum = 0.0;
+  for (const int pore : cut) sum += data_->pressures[pore];
+  return sum / static_cast<double>(cut.size());
+}
+
+double Flow::mean_pressure() const {
+  data_->require_result();
+  const Eigen::VectorXd volumes = storage_volumes(data_->built->throats);
+  return volumes.size() > 0 ? volumes.dot(data_->pressures) / volumes.sum() : 0.0;
+}
+
+double Flow::time_step_limit(const Eigen::VectorXd& masses) {
+  data_->require_result();
+  BuiltNetwork& built = *data_->built;
+  if (built.time_step_limit) return *built.time_step_limit;
+  const int spheres = built.grains.spheres.size();
+  double eigenvalue = 0.0;
+  if (built.unknowns.count > 0 && spheres > 0) {
+    const VolumeRateMatrix rates_matrix = volume_rate_matrix(built.network, built.grains.spheres);
+    const ForceMatrix force = force_matrix(built.network, built.throats, spheres, {true, true});
+    Box fixed = data_->box;
+    for (FaceCondition& face : fixed.faces) face.velocity = 0.0;
+    const auto drag = [&](const Eigen::VectorXd& v) {
+      const Eigen::VectorXd rates =
+          volume_rates(rates_matrix, built.network, v.reshaped(3, spheres), fixed);
+      Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x(built.unknowns.count);
+      for (int p = 0; p < built.network.pores(); ++p)
+        if (built.unknowns.of_pore[p] >= 0) b[built.unknowns.of_pore[p]] += rates[p];
+      built.solver->solve(b, x);
+      Eigen::VectorXd pressures = Eigen::VectorXd::Zero(built.network.pores());
+      for (int p = 0; p < built.network.pores(); ++p)
+        if (built.unknowns.of_pore[p] >= 0) pressures[p] = x[built.unknowns.of_pore[p]];
+      Eigen::Matrix3Xd acceleration = multiply(force, pressures).leftCols(spheres);
+      for (int i = 0; i < spheres; ++i) acceleration.col(i) /= masses[built.grains.columns[i]];
+      return Eigen::VectorXd(acceleration.reshaped());
+    };
+    eigenvalue = largest_eigenvalue(drag, 3 * spheres);
+  }
+  built.time_step_limit =
+      eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
+  return *built.time_step_limit;
+}
+
+std::int64_t Flow::retriangulations() const { return data_->retriangulations; }
+
+std::int64_t Flow::hidden_or_outside() const {
+  data_->require_result();
+  const BuiltNetwork& built = *data_->built;
+  return static_cast<std::int64_t>(built.network.hidden.size() + data_->packing_ids.size()) -
+         built.grains.spheres.size();
+}
+
+const PoreNetwork& Flow::network() const {
+  data_->require_result();
+  return data_->built->network;
+}
+
+const std::vector<double>& Flow::throat_conductances() const {
+  data_->require_result();
+  return data_->built->conductances.value;
+}
+
+std::vector<double> Flow::throat_fluxes() const {
+  data_->require_result();
+  const PoreNetwork& network = data_->built->network;
+  std::vector<double> fluxes(network.throats());
+  for (int t = 0; t < network.throats(); ++t)
+    fluxes[t] = data_->built->conductances.value[t] *
+                (data_->relative_pressures[network.throat_pores[t][0]] -
+                 data_->relative_pressures[network.throat_pores[t][1]]);
+  return fluxes;
+}
+
+Eigen::VectorXd Flow::pore_volumes() const {
+  data_->require_result();
+  const std::vector<double>& volumes = data_->built->throats.pore_fluid_volume;
+  return Eigen::Map<const Eigen::VectorXd>(volumes.data(),
+                                           static_cast<Eigen::Index>(volumes.size()));
+}
+
+Report Flow::report() const {
+  data_->require_result();
+  return make_report(*data_);
+}
+
+}  // namespace pfv

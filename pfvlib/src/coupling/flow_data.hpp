@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "coupling/built_network.hpp"
+#include "pfv/flow.hpp"
+
+namespace pfv {
+
+/// The state behind Flow.
+struct FlowData {
+  Box box;
+  Fluid fluid;
+  Options options;
+
+  std::unique_ptr<BuiltNetwork> built;
+  bool stale = true;
+  double time = 0.0, strain = 0.0;
+  std::int64_t retriangulations = 0;
+  Counts counts;
+  Seconds seconds;
+  double wall_total = 0.0;
+
+  // of the last call
+  bool solved = false;
+  bool moving = false;
+  double dt = 0.0;
+  double reference = 0.0;                ///< pressure that was subtracted before solving, Pa
+  Eigen::VectorXd rates;                 ///< dV/dt of each pore, m³/s
+  Eigen::VectorXd storage;               ///< V^f / (K_f dt) of each pore, or empty
+  Eigen::VectorXd old_pressures;         ///< at the last step, of the present pores, Pa
+  Eigen::VectorXd previous_pressures;    ///< the old pressures that the last solve started from, Pa
+  Eigen::VectorXd relative_pressures;    ///< minus the reference, Pa
+  Eigen::VectorXd pressures;             ///< Pa
+  Eigen::VectorXd right_side, solution;  ///< of the unknowns
+  Eigen::Matrix3Xd fluid_forces;         ///< S p: 3 x (active spheres + 6), N
+  Forces forces;
+  std::array<FaceResult, 6> faces;
+  std::vector<std::int64_t> packing_ids;
+  std::vector<double> pending_pressures;  ///< from set_state, for the next network
+
+  const Forces& compute(const Packing& packing, double step, bool advance);
+  void require_result() const;
+
+ private:
+  void rebuild_if_stale(const Packing& packing);
+  bool needs_rebuild(const Packing& packing) const;
+  void build(const Packing& packing);
+  void take_over_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values);
+  void refuse_undetermined(bool moving_now) const;
+  void refuse_isolated() const;
+  void assemble_and_factor(double step);
+  void solve_pressures(const Packing& packing, double at_time);
+  void compute_forces(const Packing& packing);
+  void add_strain(double step);
+};
+
+/// Flux and force on each face from the pressures of the last call.
+std::array<FaceResult, 6> face_results(const FlowData& flow);
+/// Flow rate (m³/s) into the box through each boundary contact.
+std::vector<double> contact_inflows(const FlowData& flow);
+/// Everything a report holds, from the last call.
+Report make_report(FlowData& flow);
+
+}  // namespace pfv

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "network/spheres.hpp"
+#include "pfv/box.hpp"
+#include "pfv/options.hpp"
+#include "pfv/packing.hpp"
+
+#include <vector>
+
+namespace pfv {
+
+/// The grains that take part in the flow: those with their centre inside the box.
+struct ActiveGrains {
+  std::vector<int> columns;  ///< of the packing, ascending
+  Spheres spheres;           ///< the same grains, in coordinates from the box's lower corner
+};
+
+/// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0,
+/// repeated ids, and (OutsideGrains::refuse) a centre that is not inside the box or no grain at all.
+ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains outside);
+
+/// Cheap tests of each step.
+bool is_inside(const Packing& packing, Eigen::Index column, const Box& box);
+Eigen::Matrix3Xd active_velocities(const Packing& packing, const std::vector<int>& columns);
+bool at_rest(const Packing& packing, const Box& box);
+
+}  // namespace pfv

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "network/spheres.hpp"
+
+#include <array>
+
+namespace pfv {
+
+/// The facet opposite vertex i of a cell, spheres first; by the right-hand rule its normal points out
+/// of the cell.
+inline std::array<Vertex, 3> facet_opposite(const std::array<Vertex, 4>& cell, int i) {
+  static constexpr int corners[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  std::array<Vertex, 3> facet{cell[corners[i][0]], cell[corners[i][1]], cell[corners[i][2]]};
+  // rotate walls to the end: a rotation keeps the orientation
+  while (is_wall(facet[0]) || (is_wall(facet[1]) && !is_wall(facet[2])))
+    facet = {facet[1], facet[2], facet[0]};
+  return facet;
+}
+
+/// Area vector (m²) of the facet's polygon: a triangle of centres; with one wall the trapezoid
+/// between two centres and their projections; with two walls the rectangle between a centre and the
+/// edge of the box. Its length is the area, its direction the facet's normal.
+inline Eigen::Vector3d area_vector(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
+  const int a = facet[0];
+  const Eigen::Vector3d second = spheres.towards(a, facet[1]);
+  const Eigen::Vector3d normal = second.cross(spheres.towards(a, facet[2]));
+  if (!is_wall(facet[2])) return 0.5 * normal;
+  const double height = spheres.distance(a, wall_number(facet[2]));
+  if (!is_wall(facet[1]))
+    return 0.5 * (height + spheres.distance(facet[1], wall_number(facet[2]))) * normal;
+  return height * spheres.distance(a, wall_number(facet[1])) * normal;
+}
+
+/// Unit normal of the facet; zero for a facet without area.
+inline Eigen::Vector3d unit_normal(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
+  const Eigen::Vector3d normal =
+      spheres.towards(facet[0], facet[1]).cross(spheres.towards(facet[0], facet[2]));
+  const double length = normal.norm();
+  return length > 0.0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
+}
+
+}  // namespace pfv

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "network/pore_boundaries.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace pfv {
+
+namespace {
+
+/// The patch's rectangle and the pore's place in the plane of its face.
+struct InFace {
+  Eigen::Vector2d lower, upper, place;
+};
+
+InFace in_face(const Patch& patch, const PoreNetwork& network, int pore) {
+  const int axis = axis_of(patch.face), first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
+  const Eigen::Vector3d place = network.origin + network.pore_centres.col(pore);
+  return {{patch.rectangle[0], patch.rectangle[2]},
+          {patch.rectangle[1], patch.rectangle[3]},
+          {place[first], place[second]}};
+}
+
+/// Distance from the pore to the middle of the patch where it lies within, infinite elsewhere.
+bool within(const InFace& p) {
+  return (p.place.array() >= p.lower.array()).all() && (p.place.array() <= p.upper.array()).all();
+}
+
+void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
+                   const Box& box, int number) {
+  const Patch& patch = box.patches[number];
+  PoreBoundaries::Contact* nearest = nullptr;
+  double nearest_distance = std::numeric_limits<double>::infinity();
+  bool any = false;
+  for (PoreBoundaries::Contact& contact : contacts) {
+    if (contact.face != static_cast<int>(patch.face)) continue;
+    const InFace place = in_face(patch, network, contact.pore);
+    if (within(place)) {
+      contact.boundary = 6 + number;
+      any = true;
+    }
+    const double distance = (place.place - 0.5 * (place.lower + place.upper)).norm();
+    if (distance < nearest_distance) {
+      nearest_distance = distance;
+      nearest = &contact;
+    }
+  }
+  if (!any && nearest) nearest->boundary = 6 + number;
+}
+
+}  // namespace
+
+std::string boundary_name(const Box& box, int number) {
+  if (number < 6) return std::string("face ") + name_of(static_cast<Face>(number));
+  return "patch " + std::to_string(number - 5) + " on face " +
+         name_of(box.patches[number - 6].face);
+}
+
+PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Box& box) {
+  PoreBoundaries result;
+  for (int pore = 0; pore < network.pores(); ++pore)
+    for (int face = 0; face < 6; ++face)
+      if (network.pore_faces[pore] >> face & 1) result.contacts.push_back({pore, face, face});
+  for (std::size_t i = 0; i < box.patches.size(); ++i)
+    give_to_patch(result.contacts, network, box, static_cast<int>(i));
+
+  result.no_slip_faces.assign(network.pores(), 0);
+  for (const auto& contact : result.contacts)
+    if (box.faces[contact.face].wall == Wall::no_slip &&
+        boundary_of(box, contact.boundary).kind == Boundary::Kind::sealed)
+      result.no_slip_faces[contact.pore] |= static_cast<std::uint8_t>(1u << contact.face);
+  return result;
+}
+
+}  // namespace pfv

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "network/spheres.hpp"
+#include "pfv/network.hpp"
+
+namespace pfv {
+
+/// Packing and box -> pores and throats (Chareyre et al. 2012, sec. 2). Cells that share one dual
+/// vertex (distance below 1e-8 of the mean sphere spacing) become one pore.
+/// Throws InputError when two spheres have one centre.
+PoreNetwork build_network(const Spheres& spheres, const Eigen::Vector3d& origin);
+
+/// The cell that contains a place (in the coordinates of `spheres`): walks from cell `start` through
+/// the facets that separate; falls back to a search. Cost: about N^(1/3) steps.
+int locate(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place,
+           int start);
+
+}  // namespace pfv

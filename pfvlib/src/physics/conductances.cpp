@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/conductances.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pfv {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double alpha = 0.5;  // Chareyre et al. 2012, after eq. 9
+
+bool is_closed(const Throats& throats, int t) {
+  return throats.fluid_area[t] <= 1e-12 * throats.area[t];
+}
+
+/// phi / gamma of the throat or, where that has no meaning, of its two pores; <= 0 where neither has.
+double hydraulic_radius(const Throats& throats, const std::array<int, 2>& pores, int t,
+                        bool& by_rule) {
+  by_rule = throats.volume[t] <= 0.0 || throats.gamma[t] <= 0.0;
+  if (!by_rule) return throats.volume[t] / throats.gamma[t];
+  const double volume =
+      throats.pore_fluid_volume[pores[0]] + throats.pore_fluid_volume[pores[1]];
+  const double gamma = throats.pore_gamma[pores[0]] + throats.pore_gamma[pores[1]];
+  return gamma > 0.0 ? volume / gamma : 0.0;
+}
+
+/// Radius of the circle in the facet's plane that touches its three spheres and walls. Its centre x
+/// (from the first sphere) is linear in its radius s: from |x - x_i| = s + r_i less |x| = s + r_0,
+/// and w . x = h - s for a wall; |x| = s + r_0 then leaves a quadratic equation.
+double inscribed_radius(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
+  const int first = facet[0];
+  const double r0 = spheres.radii[first];
+  const Eigen::Vector3d normal =
+      spheres.towards(first, facet[1]).cross(spheres.towards(first, facet[2]));
+  const double length2 = normal.squaredNorm();
+  if (length2 == 0.0) return 0.0;
+  std::array<Eigen::Vector3d, 2> row;
+  std::array<double, 2> constant, slope;
+  for (int i = 0; i < 2; ++i) {
+    const Vertex vertex = facet[i + 1];
+    row[i] = spheres.towards(first, vertex);
+    if (is_wall(vertex)) {
+      constant[i] = spheres.distance(first, wall_number(vertex));
+      slope[i] = -1.0;
+    } else {
+      const double r = spheres.radii[vertex];
+      constant[i] = 0.5 * (row[i].squaredNorm() + (r0 - r) * (r0 + r));
+      slope[i] = r0 - r;
+    }
+  }
+  const Eigen::Vector3d to_first = row[1].cross(normal) / length2;
+  const Eigen::Vector3d to_second = normal.cross(row[0]) / length2;
+  const Eigen::Vector3d at_zero = constant[0] * to_first + constant[1] * to_second;
+  const Eigen::Vector3d per_radius = slope[0] * to_first + slope[1] * to_second;
+  const double a = per_radius.squaredNorm() - 1.0;
+  const double b = at_zero.dot(per_radius) - r0;
+  const double c = at_zero.squaredNorm() - r0 * r0;
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0.0) return 0.0;
+  // a s² + 2 b s + c = 0 without cancellation; the smallest positive root is the circle in the gap
+  const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+  double radius = std::numeric_limits<double>::infinity();
+  for (const double root : {a != 0.0 ? q / a : -1.0, q != 0.0 ? c / q : -1.0})
+    if (root > 0.0) radius = std::min(radius, root);
+  return std::isfinite(radius) ? radius : 0.0;
+}
+
+double effective_radius(const PoreNetwork& network, const Throats& throats,
+                        const Spheres& spheres, int t) {
+  double inscribed = std::numeric_limits<double>::infinity();
+  for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
+    inscribed = std::min(inscribed, inscribed_radius(network.facet_vertices[f], spheres));
+  return (std::sqrt(throats.fluid_area[t] / pi) + inscribed) / 4.0;
+}
+
+}  // namespace
+
+Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwork& network,
+                          const Throats& throats, const Spheres& spheres) {
+  Conductances result;
+  result.value.assign(network.throats(), 0.0);
+  for (int t = 0; t < network.throats(); ++t) {
+    if (is_closed(throats, t)) {
+      ++result.degenerate;
+      continue;
+    }
+    const double scale = 1.0 / (viscosity * throats.length[t]);
+    if (law == ConductanceLaw::effective_radius) {
+      const double radius = effective_radius(network, throats, spheres, t);
+      result.value[t] = 2.0 * pi * std::pow(radius, 4) * scale;
+      continue;
+    }
+    bool by_rule = false;
+    const double radius = hydraulic_radius(throats, network.throat_pores[t], t, by_rule);
+    if (by_rule) ++result.degenerate;
+    if (radius > 0.0)
+      result.value[t] = alpha * throats.fluid_area[t] * radius * radius * scale;
+  }
+  return result;
+}
+
+}  // namespace pfv

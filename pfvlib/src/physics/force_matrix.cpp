@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/force_matrix.hpp"
+
+#include "geometry/solid_angle.hpp"
+
+#include <algorithm>
+
+namespace pfv {
+
+namespace {
+
+struct Entry {
+  int row;
+  int pore;
+  Eigen::Vector3d value;
+};
+
+/// Share of the throat's viscous force that vertex k of facet f takes.
+double viscous_share(const PoreNetwork& network, const Throats& throats, int t, int f, int k) {
+  if (throats.gamma[t] > 0.0) return throats.facet_gamma[f][k] / throats.gamma[t];
+  int spheres = 0;
+  for (int g = network.throat_facets[t]; g < network.throat_facets[t + 1]; ++g)
+    for (const Vertex vertex : network.facet_vertices[g]) spheres += !is_wall(vertex);
+  return is_wall(network.facet_vertices[f][k]) ? 0.0 : 1.0 / spheres;
+}
+
+/// Visits (row, throat, area) for every facet vertex that takes a force.
+template <class Visit>
+void for_each_share(const PoreNetwork& network, const Throats& throats, int spheres,
+                    ForceParts parts, Visit&& visit) {
+  for (int t = 0; t < network.throats(); ++t)
+    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
+      for (int k = 0; k < 3; ++k) {
+        const Vertex vertex = network.facet_vertices[f][k];
+        double area = 0.0;
+        if (parts.pressure) area += throats.facet_disc[f][k];
+        if (parts.viscous && throats.fluid_area[t] > 0.0)
+          area += throats.fluid_area[t] * viscous_share(network, throats, t, f, k);
+        if (area != 0.0)
+          visit(is_wall(vertex) ? spheres + wall_number(vertex) : vertex, t, area);
+      }
+}
+
+/// Sorts the entries of each row by pore and adds those of one pore.
+ForceMatrix compress(std::vector<int> row_begin, std::vector<int> pore,
+                     std::vector<Eigen::Vector3d> value) {
+  ForceMatrix matrix;
+  const int rows = static_cast<int>(row_begin.size()) - 1;
+  matrix.row_begin.reserve(row_begin.size());
+  std::vector<int> order;
+  int kept = 0;
+  for (int row = 0; row < rows; ++row) {
+    order.clear();
+    for (int e = row_begin[row]; e < row_begin[row + 1]; ++e) order.push_back(e);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return pore[a] < pore[b]; });
+    const int begin = static_cast<int>(matrix.pore.size());
+    for (const int e : order) {
+      if (static_cast<int>(matrix.pore.size()) > begin && matrix.pore.back() == pore[e]) {
+        matrix.value.col(kept - 1) += value[e];
+        continue;
+      }
+      if (kept == matrix.value.cols())
+        matrix.value.conservativeResize(3, std::max(1024, 2 * kept));
+      matrix.pore.push_back(pore[e]);
+      matrix.value.col(kept++) = value[e];
+    }
+    matrix.row_begin.push_back(kept);
+  }
+  matrix.value.conservativeResize(3, kept);
+  return matrix;
+}
+
+}  // namespace
+
+ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats, int spheres,
+                         ForceParts parts) {
+  std::vector<int> row_begin(spheres + 7, 0);
+  for_each_share(network, throats, spheres, parts,
+                 [&](int row, int, double) { row_begin[row + 1] += 2; });
+  for (int row = 0; row < spheres + 6; ++row) row_begin[row + 1] += row_begin[row];
+  std::vector<int> next(row_begin.begin(), row_begin.end() - 1);
+  std::vector<int> pore(row_begin.back());
+  std::vector<Eigen::Vector3d> value(row_begin.back());
+  for_each_share(network, throats, spheres, parts, [&](int row, int t, double area) {
+    for (int side = 0; side < 2; ++side) {
+      const int entry = next[row]++;
+      pore[entry] = network.throat_pores[t][side];
+      value[entry] = (side == 0 ? area : -area) * throats.normal.col(t);
+    }
+  });
+  return compress(std::move(row_begin), std::move(pore), std::move(value));
+}
+
+Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures) {
+  Eigen::Matrix3Xd forces(3, matrix.rows());
+  for (int row = 0; row < matrix.rows(); ++row) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e)
+      sum += pressures[matrix.pore[e]] * matrix.value.col(e);
+    forces.col(row) = sum;
+  }
+  return forces;
+}
+
+SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& spheres) {
+  std::vector<std::vector<std::pair<int, double>>> rows(spheres.size());
+  for (int c = 0; c < network.cells(); ++c) {
+    const auto& cell = network.cell_vertices[c];
+    for (int i = 0; i < 4 && !is_wall(cell[i]); ++i) {
+      const double angle = std::abs(solid_angle(spheres.towards(cell[i], cell[(i + 1) % 4]),
+                                                spheres.towards(cell[i], cell[(i + 2) % 4]),
+                                                spheres.towards(cell[i], cell[(i + 3) % 4])));
+      rows[cell[i]].emplace_back(network.cell_pore[c], angle);
+    }
+  }
+  SurfacePressure matrix;
+  for (const auto& row : rows) {
+    double sum = 0.0;
+    for (const auto& [pore, angle] : row) sum += angle;
+    for (const auto& [pore, angle] : row) {
+      matrix.pore.push_back(pore);
+      matrix.weight.push_back(angle / sum);
+    }
+    matrix.row_begin.push_back(static_cast<int>(matrix.pore.size()));
+  }
+  return matrix;
+}
+
+Eigen::VectorXd multiply(const SurfacePressure& matrix, const Eigen::VectorXd& pressures) {
+  const auto rows = static_cast<Eigen::Index>(matrix.row_begin.size()) - 1;
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(rows);
+  for (Eigen::Index row = 0; row < rows; ++row)
+    for (int e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e)
+      mean[row] += matrix.weight[e] * pressures[matrix.pore[e]];
+  return mean;
+}
+
+}  // namespace pfv

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "network/spheres.hpp"
+#include "physics/throats.hpp"
+#include "pfv/network.hpp"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace pfv {
+
+/// S of F = S p (Chareyre et al. 2012 eqs. 14, 17, 18), in compressed rows: row k < N is sphere k,
+/// row N + f the viscous force on face f. An entry is a vector (m²) for the pressure of one pore.
+struct ForceMatrix {
+  std::vector<int> row_begin{0};
+  std::vector<int> pore;
+  Eigen::Matrix3Xd value;
+
+  int rows() const { return static_cast<int>(row_begin.size()) - 1; }
+};
+
+struct ForceParts {
+  bool pressure = true, viscous = true;
+};
+
+/// Facet by facet, with n from pore i to pore j: sphere k gets A^k (p_i - p_j) n (pressure), and of
+/// A^f (p_i - p_j) n (viscous) the share gamma^k / gamma, as does a no-slip wall. Each facet hands out
+/// S (p_i - p_j) n in full, so the forces on spheres and faces balance for any pressures.
+/// A throat with gamma <= 0 shares its viscous force equally among its spheres.
+ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats, int spheres,
+                         ForceParts parts);
+
+/// F = S p: 3 x (N + 6), N.
+Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures);
+
+/// Mean pressure over each sphere's surface: pores weighted with the solid angle of their cells, Pa.
+struct SurfacePressure {
+  std::vector<int> row_begin{0};
+  std::vector<int> pore;
+  std::vector<double> weight;
+};
+SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& spheres);
+Eigen::VectorXd multiply(const SurfacePressure& matrix, const Eigen::VectorXd& pressures);
+
+}  // namespace pfv

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/solid_union.hpp"
+
+#include "geometry/ball_sections.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace pfv {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Orthonormal axes towards an edge, a facet and a cell that hold one sphere; false where they are
+/// degenerate (the orthoscheme then has no volume).
+bool add_axis(Eigen::Matrix3d& axes, int count, Eigen::Vector3d direction) {
+  const double scale = direction.norm();
+  for (int i = 0; i < count; ++i) direction -= axes.col(i).dot(direction) * axes.col(i);
+  const double length = direction.norm();
+  if (length <= 1e-14 * scale) return false;
+  axes.col(count) = direction / length;
+  return true;
+}
+
+/// What the plane shared with `cell[other]` takes from sphere `cell[corner]` within this cell.
+BallSection cut_within_cell(const PoreNetwork& network, const Spheres& spheres, int c, int corner,
+                            int other) {
+  const auto& cell = network.cell_vertices[c];
+  const int k = cell[corner];
+  const Eigen::Vector3d centre = network.cell_centres.col(c) - spheres.centres.col(k);
+  Eigen::Matrix3d axes;
+  BallSection sum;
+  if (!add_axis(axes, 0, spheres.towards(k, cell[other]))) return sum;
+  const double a = axes.col(0).dot(centre);
+  if (std::abs(a) >= spheres.radii[k]) return sum;
+  for (int third = 0; third < 4; ++third) {
+    if (third == corner || third == other) continue;
+    const int fourth = 6 - corner - other - third;
+    if (!add_axis(axes, 1, spheres.towards(k, cell[third])) ||
+        !add_axis(axes, 2, spheres.towards(k, cell[fourth])))
+      continue;
+    const double b = axes.col(1).dot(centre), d = axes.col(2).dot(centre);
+    const double sign = (a < 0) ^ (b < 0) ^ (d < 0) ? -1.0 : 1.0;
+    const BallSection cut =
+        beyond_plane(spheres.radii[k], std::abs(a), std::abs(b), std::abs(d));
+    sum.volume += sign * cut.volume;
+    sum.area += sign * cut.area;
+  }
+  return sum;
+}
+
+}  // namespace
+
+SolidUnion solid_union(const PoreNetwork& network, const Spheres& spheres) {
+  std::vector<BallSection> cut(spheres.size());
+  std::vector<char> centre_outside(spheres.size(), 0);  // of its own power cell
+  for (int c = 0; c < network.cells(); ++c) {
+    const auto& cell = network.cell_vertices[c];
+    for (int i = 0; i < 4 && !is_wall(cell[i]); ++i)
+      for (int j = 0; j < 4; ++j) {
+        if (i == j) continue;
+        const int k = cell[i];
+        const BallSection section = cut_within_cell(network, spheres, c, i, j);
+        cut[k].volume += section.volume;
+        cut[k].area += section.area;
+        const Eigen::Vector3d centre = network.cell_centres.col(c) - spheres.centres.col(k);
+        if (centre.dot(spheres.towards(k, cell[j])) < 0.0) centre_outside[k] = 1;
+      }
+  }
+  for (const int k : network.hidden) centre_outside[k] = 1;
+  SolidUnion solid;
+  for (int k = 0; k < spheres.size(); ++k) {
+    const double r = spheres.radii[k];
+    // the cones of the power cell's facets fill the whole ball only if they surround its centre
+    const double whole = centre_outside[k] ? 0.0 : 4.0 * pi;
+    solid.volume += whole * r * r * r / 3.0 - cut[k].volume;
+    solid.area += whole * r * r - cut[k].area;
+  }
+  return solid;
+}
+
+}  // namespace pfv

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "network/spheres.hpp"
+#include "pfv/network.hpp"
+
+namespace pfv {
+
+struct SolidUnion {
+  double volume = 0.0;  ///< of the union of the spheres inside the box, m³
+  double area = 0.0;    ///< of its surface inside the box, m²
+};
+
+/// Exact volume and surface of the union of the spheres inside the box: each sphere's part in its own
+/// power cell, which its walls and the radical planes of its overlaps cut. Those cuts are summed over
+/// the orthoschemes (sphere, edge, facet, cell) of the triangulation.
+SolidUnion solid_union(const PoreNetwork& network, const Spheres& spheres);
+
+}  // namespace pfv

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/throats.hpp"
+
+#include "geometry/disc_sections.hpp"
+#include "geometry/solid_angle.hpp"
+#include "network/facets.hpp"
+
+#include <cmath>
+
+namespace pfv {
+
+namespace {
+
+/// The facet's polygon in its own plane, with sphere `facet[corner]` at the origin; counterclockwise.
+struct FlatFacet {
+  Polygon polygon;
+  std::array<Eigen::Vector2d, 2> others;  ///< the two other vertices: centres (spheres only)
+};
+
+FlatFacet flatten(const std::array<Vertex, 3>& facet, int corner, const Spheres& spheres,
+                  const Eigen::Vector3d& normal) {
+  const Vertex next = facet[(corner + 1) % 3], previous = facet[(corner + 2) % 3];
+  const int k = facet[corner];
+  const Eigen::Vector3d first = spheres.towards(k, next).normalized();
+  const Eigen::Vector3d second = normal.cross(first);
+  const auto flat = [&](const Eigen::Vector3d& v) {
+    return Eigen::Vector2d(first.dot(v), second.dot(v));
+  };
+  const auto reach = [&](int sphere, Vertex wall) -> Eigen::Vector3d {
+    return spheres.distance(sphere, wall_number(wall)) * spheres.towards(sphere, wall);
+  };
+  const bool next_wall = is_wall(next), previous_wall = is_wall(previous);
+  const Eigen::Vector3d to_next = next_wall ? reach(k, next) : spheres.towards(k, next);
+  const Eigen::Vector3d to_previous =
+      previous_wall ? reach(k, previous) : spheres.towards(k, previous);
+
+  FlatFacet result;
+  result.others = {flat(to_next), flat(to_previous)};
+  result.polygon.add(Eigen::Vector2d::Zero());
+  result.polygon.add(flat(to_next));
+  if (next_wall && previous_wall) result.polygon.add(flat(to_next + to_previous));
+  if (next_wall && !previous_wall)
+    result.polygon.add(flat(to_previous + reach(previous, next)));
+  if (!next_wall && previous_wall) result.polygon.add(flat(to_next + reach(next, previous)));
+  result.polygon.add(flat(to_previous));
+  return result;
+}
+
+/// True when disc k meets neither another disc of the facet nor a side that does not start at its
+/// centre: its part of the facet is then a plain sector.
+bool is_plain_sector(const std::array<Vertex, 3>& facet, int corner, const Spheres& spheres,
+                     double area) {
+  const int k = facet[corner];
+  const double radius = spheres.radii[k];
+  const Vertex next = facet[(corner + 1) % 3], previous = facet[(corner + 2) % 3];
+  for (const Vertex other : {next, previous}) {
+    if (is_wall(other)) {
+      if (spheres.distance(k, wall_number(other)) < radius) return false;
+      continue;
+    }
+    const double reach = radius + spheres.radii[other];
+    if (spheres.towards(k, other).squaredNorm() < reach * reach) return false;
+  }
+  if (is_wall(next) && is_wall(previous)) return true;
+  if (is_wall(facet[2])) {  // trapezoid: the other sphere's plumb line is the opposite side
+    const Vertex other = is_wall(next) ? previous : next;
+    const Vertex wall = is_wall(next) ? next : previous;
+    return spheres.towards(k, other).cross(spheres.towards(k, wall)).norm() >= radius;
+  }
+  const double opposite = (spheres.centres.col(next) - spheres.centres.col(previous)).norm();
+  return 2.0 * area >= radius * opposite;
+}
+
+/// A^k: the part of the facet that disc k covers and that lies on its side of the chords it shares
+/// with the other discs, so that the parts add up to the area of the discs' union.
+double disc_part(const std::array<Vertex, 3>& facet, int corner, const Spheres& spheres,
+                 const Eigen::Vector3d& normal, double area) {
+  const int k = facet[corner];
+  const double radius = spheres.radii[k];
+  if (is_plain_sector(facet, corner, spheres, area)) {
+    const Eigen::Vector3d u = spheres.towards(k, facet[(corner + 1) % 3]);
+    const Eigen::Vector3d v = spheres.towards(k, facet[(corner + 2) % 3]);
+    return 0.5 * radius * radius * std::atan2(u.cross(v).norm(), u.dot(v));
+  }
+  FlatFacet flat = flatten(facet, corner, spheres, normal);
+  for (int i = 0; i < 2; ++i) {
+    const Vertex other = facet[(corner + 1 + i) % 3];
+    if (is_wall(other)) continue;
+    const double r = spheres.radii[other];
+    const Eigen::Vector2d& centre = flat.others[i];
+    flat.polygon = clip(flat.polygon, centre,
+                        0.5 * (centre.squaredNorm() + (radius - r) * (radius + r)));
+  }
+  return area_in_disc(flat.polygon, radius);
+}
+
+/// The two pyramids of a facet: on cell 0 and on cell 1.
+struct Halves {
+  std::array<double, 2> height;             ///< signed distance of P from the facet
+  std::array<double, 2> volume{0.0, 0.0};   ///< of the pyramid, solid included
+  std::array<double, 2> phi{0.0, 0.0};      ///< minus the wedges of the spheres
+  std::array<double, 2> gamma{0.0, 0.0};
+  std::array<double, 3> gamma_of_vertex{0.0, 0.0, 0.0};
+};
+
+void add_sphere(Halves& halves, const PoreNetwork& network, const Spheres& spheres, int f,
+                int corner) {
+  const auto& facet = network.facet_vertices[f];
+  const int k = facet[corner];
+  const double radius = spheres.radii[k];
+  const Eigen::Vector3d u = spheres.towards(k, facet[(corner + 1) % 3]);
+  const Eigen::Vector3d v = spheres.towards(k, facet[(corner + 2) % 3]);
+  for (int side = 0; side < 2; ++side) {
+    const Eigen::Vector3d to_centre =
+        network.cell_centres.col(network.facet_cells[f][side]) - spheres.centres.col(k);
+    const double angle = (side == 0 ? -1.0 : 1.0) * solid_angle(u, v, to_centre);
+    halves.phi[side] -= radius * radius * radius * angle / 3.0;
+    halves.gamma[side] += radius * radius * angle;
+    halves.gamma_of_vertex[corner] += radius * radius * angle;
+  }
+}
+
+/// The strip of wall under one side of the facet, out to P on either side; only where fluid sticks.
+void add_wall(Halves& halves, const PoreNetwork& network, const PoreBoundaries& boundaries,
+              const Spheres& spheres, int f, int corner) {
+  const auto& facet = network.facet_vertices[f];
+  const int face = wall_number(facet[corner]);
+  const double side_length =
+      is_wall(facet[1]) ? spheres.distance(facet[0], wall_number(facet[corner == 1 ? 2 : 1]))
+                        : spheres.towards(facet[0], facet[1])
+                              .cross(spheres.towards(facet[0], facet[2]))
+                              .norm();
+  for (int side = 0; side < 2; ++side) {
+    const int pore = network.cell_pore[network.facet_cells[f][side]];
+    if (!(boundaries.no_slip_faces[pore] >> face & 1)) continue;
+    const double area = 0.5 * side_length * halves.height[side];
+    halves.gamma[side] += area;
+    halves.gamma_of_vertex[corner] += area;
+  }
+}
+
+Halves measure_halves(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                      const Spheres& spheres, int f, double area, const Eigen::Vector3d& normal) {
+  const auto& facet = network.facet_vertices[f];
+  const auto& cells = network.facet_cells[f];
+  const Eigen::Vector3d corner = spheres.centres.col(facet[0]);
+  Halves halves;
+  halves.height = {normal.dot(corner - network.cell_centres.col(cells[0])),
+                   normal.dot(network.cell_centres.col(cells[1]) - corner)};
+  for (int side = 0; side < 2; ++side)
+    halves.volume[side] = halves.phi[side] = area * halves.height[side] / 3.0;
+  for (int k = 0; k < 3; ++k) {
+    if (is_wall(facet[k]))
+      add_wall(halves, network, boundaries, spheres, f, k);
+    else
+      add_sphere(halves, network, spheres, f, k);
+  }
+  return halves;
+}
+
+void resize(Throats& throats, const PoreNetwork& network) {
+  throats.facet_disc.assign(network.facets(), {0.0, 0.0, 0.0});
+  throats.facet_gamma.resize(network.facets());
+  throats.normal.resize(3, network.throats());
+  for (auto* values : {&throats.area, &throats.fluid_area, &throats.length, &throats.volume,
+                       &throats.gamma})
+    values->assign(network.throats(), 0.0);
+  for (auto* values : {&throats.pore_volume, &throats.pore_fluid_volume, &throats.pore_gamma})
+    values->assign(network.pores(), 0.0);
+}
+
+void add_to_pores(Throats& throats, const PoreNetwork& network, const Halves& halves, int f) {
+  for (int side = 0; side < 2; ++side) {
+    const int pore = network.cell_pore[network.facet_cells[f][side]];
+    throats.pore_volume[pore] += halves.volume[side];
+    throats.pore_fluid_volume[pore] += halves.phi[side];
+    throats.pore_gamma[pore] += halves.gamma[side];
+  }
+}
+
+void measure_throat(Throats& throats, const PoreNetwork& network,
+                    const PoreBoundaries& boundaries, const Spheres& spheres, int t) {
+  double largest = -1.0, discs = 0.0;
+  for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
+    const auto& facet = network.facet_vertices[f];
+    const double area = area_vector(facet, spheres).norm();
+    const Eigen::Vector3d normal = unit_normal(facet, spheres);
+    const Halves halves = measure_halves(network, boundaries, spheres, f, area, normal);
+    add_to_pores(throats, network, halves, f);
+    throats.facet_gamma[f] = halves.gamma_of_vertex;
+    for (int k = 0; k < 3; ++k)
+      if (!is_wall(facet[k]))
+        discs += throats.facet_disc[f][k] = disc_part(facet, k, spheres, normal, area);
+    throats.area[t] += area;
+    throats.volume[t] += halves.phi[0] + halves.phi[1];
+    throats.gamma[t] += halves.gamma[0] + halves.gamma[1];
+    if (area > largest) {
+      largest = area;
+      throats.normal.col(t) = normal;
+    }
+  }
+  throats.fluid_area[t] = std::max(0.0, throats.area[t] - discs);
+  const auto [i, j] = network.throat_pores[t];
+  throats.length[t] = (network.pore_centres.col(j) - network.pore_centres.col(i)).norm();
+}
+
+}  // namespace
+
+Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                        const Spheres& spheres) {
+  Throats throats;
+  resize(throats, network);
+  for (int t = 0; t < network.throats(); ++t)
+    measure_throat(throats, network, boundaries, spheres, t);
+  // facets inside a merged pore carry no flow but bound part of its volume and surface
+  for (int f = network.throat_facets.back(); f < network.facets(); ++f) {
+    const auto& facet = network.facet_vertices[f];
+    const Halves halves =
+        measure_halves(network, boundaries, spheres, f, area_vector(facet, spheres).norm(),
+                       unit_normal(facet, spheres));
+    throats.facet_gamma[f] = halves.gamma_of_vertex;
+    add_to_pores(throats, network, halves, f);
+  }
+  return throats;
+}
+
+}  // namespace pfv

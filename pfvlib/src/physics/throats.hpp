@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "network/pore_boundaries.hpp"
+#include "network/spheres.hpp"
+#include "pfv/network.hpp"
+
+#include <array>
+#include <vector>
+
+namespace pfv {
+
+/// Geometry of facets and throats (Chareyre et al. 2012, sec. 3.2). The domain of a throat between
+/// pores i and j is the union of the pyramids (facet, P_i) and (facet, P_j) minus the spheres;
+/// volumes and solid angles are signed, since P may lie beyond its facet.
+struct Throats {
+  // one entry a facet of the network; k counts its vertices (spheres first)
+  std::vector<std::array<double, 3>> facet_disc;   ///< A^k: part of disc k in the facet, m²; discs
+                                                   ///< that overlap are parted by their chord
+  std::vector<std::array<double, 3>> facet_gamma;  ///< area of sphere k in the domain, or of wall k
+                                                   ///< if it is a no-slip wall, m²
+
+  // one entry a throat
+  Eigen::Matrix3Xd normal;           ///< from its first pore to its second
+  std::vector<double> area;          ///< S: polygon, m²
+  std::vector<double> fluid_area;    ///< A^f = S - sum of A^k, >= 0, m²
+  std::vector<double> length;        ///< L = |P_i P_j|, m
+  std::vector<double> volume;        ///< phi, pore volume of the domain, m³
+  std::vector<double> gamma;         ///< solid surface of the domain, no-slip walls included, m²
+
+  // one entry a pore
+  std::vector<double> pore_volume;        ///< of its cells, solid included, m³
+  std::vector<double> pore_fluid_volume;  ///< minus the wedges of its spheres, m³
+  std::vector<double> pore_gamma;         ///< solid surface in its cells, m²
+};
+
+/// Measures every throat. Pure; cost about 4 µs a sphere.
+Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                        const Spheres& spheres);
+
+}  // namespace pfv

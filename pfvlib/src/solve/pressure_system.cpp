@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/pressure_system.hpp"
+
+#include "network/disjoint_sets.hpp"
+#include "pfv/error.hpp"
+
+#include <algorithm>
+
+namespace pfv {
+
+namespace {
+
+/// The boundary whose shared pressure the pore takes among its contacts, or -1.
+struct PoreCondition {
+  bool pressure = false;
+  int flux_boundary = -1;
+};
+
+std::vector<PoreCondition> conditions_of_pores(const PoreNetwork& network,
+                                               const PoreBoundaries& boundaries, const Box& box) {
+  std::vector<PoreCondition> conditions(network.pores());
+  for (const auto& contact : boundaries.contacts) {
+    PoreCondition& condition = conditions[contact.pore];
+    const Boundary::Kind kind = boundary_of(box, contact.boundary).kind;
+    if (kind == Boundary::Kind::pressure) condition.pressure = true;
+    if (kind == Boundary::Kind::flux && condition.flux_boundary < 0)
+      condition.flux_boundary = contact.boundary;
+  }
+  return conditions;
+}
+
+struct Triplets {
+  std::vector<int> row, column;
+  std::vector<double> value;
+  void add(int r, int c, double v) {
+    row.push_back(r);
+    column.push_back(c);
+    value.push_back(v);
+  }
+};
+
+/// Compressed rows with sorted columns; entries of one place are added.
+SymmetricMatrix compress(const Triplets& triplets, const std::vector<double>& diagonal) {
+  const int n = static_cast<int>(diagonal.size());
+  std::vector<int> begin(n + 1, 0);
+  for (const int r : triplets.row) ++begin[r + 1];
+  for (int r = 0; r < n; ++r) begin[r + 1] += begin[r];
+  std::vector<std::pair<int, double>> entries(triplets.row.size());
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (std::size_t e = 0; e < triplets.row.size(); ++e)
+    entries[next[triplets.row[e]]++] = {triplets.column[e], triplets.value[e]};
+
+  SymmetricMatrix matrix;
+  matrix.row_begin.reserve(n + 1);
+  matrix.column.reserve(entries.size() + n);
+  matrix.value.reserve(entries.size() + n);
+  std::vector<std::pair<int, double>> row;
+  for (int r = 0; r < n; ++r) {
+    row.assign(entries.begin() + begin[r], entries.begin() + begin[r + 1]);
+    row.emplace_back(r, diagonal[r]);
+    std::stable_sort(row.begin(), row.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    const std::size_t first = matrix.column.size();
+    for (const auto& [column, value] : row) {
+      if (matrix.column.size() > first && matrix.column.back() == column) {
+        matrix.value.back() += value;
+      } else {
+        matrix.column.push_back(column);
+        matrix.value.push_back(value);
+      }
+    }
+    matrix.row_begin.push_back(static_cast<int>(matrix.column.size()));
+  }
+  return matrix;
+}
+
+/// Sets of unknowns that open throats join; those that touch an imposed pressure are not isolated.
+std::vector<Isolated> find_isolated(const PoreNetwork& network,
+                                    const std::vector<double>& conductances,
+                                    const Unknowns& unknowns) {
+  DisjointSets sets(unknowns.count);
+  std::vector<char> anchored(unknowns.count, 0);
+  for (int pass = 0; pass < 2; ++pass)
+    for (int t = 0; t < network.throats(); ++t) {
+      if (conductances[t] <= 0.0) continue;
+      const int i = unknowns.of_pore[network.throat_pores[t][0]];
+      const int j = unknowns.of_pore[network.throat_pores[t][1]];
+      if (pass == 0 && i >= 0 && j >= 0) sets.join(i, j);
+      if (pass == 1 && (i < 0) != (j < 0)) anchored[sets.find(std::max(i, j))] = 1;
+    }
+  std::vector<int> place(unknowns.count, -1);
+  std::vector<Isolated> isolated;
+  for (int pore = 0; pore < network.pores(); ++pore) {
+    const int unknown = unknowns.of_pore[pore];
+    if (unknown < 0) continue;
+    const int root = sets.find(unknown);
+    if (anchored[root]) continue;
+    if (place[root] < 0) {
+      place[root] = static_cast<int>(isolated.size());
+      isolated.push_back({{}, unknown});
+    }
+    isolated[place[root]].pores.push_back(pore);
+  }
+  return isolated;
+}
+
+}  // namespace
+
+Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                         const Box& box) {
+  const auto conditions = conditions_of_pores(network, boundaries, box);
+  Unknowns unknowns;
+  unknowns.of_pore.assign(network.pores(), Unknowns::imposed);
+  unknowns.of_boundary.assign(6 + box.patches.size(), -1);
+  for (int pore = 0; pore < network.pores(); ++pore) {
+    if (conditions[pore].pressure) continue;
+    if (conditions[pore].flux_boundary < 0) {
+      unknowns.of_pore[pore] = unknowns.count++;
+      continue;
+    }
+    int& shared = unknowns.of_boundary[conditions[pore].flux_boundary];
+    if (shared < 0) shared = unknowns.count++;
+    unknowns.of_pore[pore] = shared;
+  }
+  for (int b = 0; b < static_cast<int>(unknowns.of_boundary.size()); ++b) {
+    const Boundary& boundary = boundary_of(box, b);
+    if (boundary.kind == Boundary::Kind::flux && boundary.value != 0.0 &&
+        unknowns.of_boundary[b] < 0)
+      throw InputError(boundary_name(box, b) +
+                       ": its flux has no pore to enter (all its pores carry an imposed pressure, "
+                       "or it has none); give the flux to another face or enlarge the patch");
+  }
+  return unknowns;
+}
+
+Eigen::VectorXd imposed_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                                  const Box& box, double time) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.pores());
+  Eigen::VectorXi count = Eigen::VectorXi::Zero(network.pores());
+  for (const auto& contact : boundaries.contacts) {
+    const Boundary& boundary = boundary_of(box, contact.boundary);
+    if (boundary.kind != Boundary::Kind::pressure) continue;
+    const double value =
+        boundary.profile
+            ? boundary.profile(network.origin + network.pore_centres.col(contact.pore), time)
+            : boundary.value;
+    sum[contact.pore] += value;
+    ++count[contact.pore];
+  }
+  for (const auto& contact : boundaries.contacts)
+    if (count[contact.pore] > 1) {
+      sum[contact.pore] /= count[contact.pore];
+      count[contact.pore] = 1;
+    }
+  return sum;
+}
+
+PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
+                        const Unknowns& unknowns, const Eigen::VectorXd& storage) {
+  PressureSystem system;
+  std::vector<double> diagonal(unknowns.count, 0.0);
+  Triplets off_diagonal;
+  for (int t = 0; t < network.throats(); ++t) {
+    const double c = conductances[t];
+    if (c <= 0.0) continue;
+    const auto [p, q] = network.throat_pores[t];
+    const int i = unknowns.of_pore[p], j = unknowns.of_pore[q];
+    if (i == j) continue;  // two imposed pressures, or one shared unknown
+    if (i >= 0) diagonal[i] += c;
+    if (j >= 0) diagonal[j] += c;
+    if (i >= 0 && j >= 0) {
+      off_diagonal.add(i, j, -c);
+      off_diagonal.add(j, i, -c);
+    } else {
+      system.couplings.push_back({std::max(i, j), i < 0 ? p : q, c});
+    }
+  }
+  if (storage.size() > 0) {
+    for (int pore = 0; pore < network.pores(); ++pore)
+      if (unknowns.of_pore[pore] >= 0) diagonal[unknowns.of_pore[pore]] += storage[pore];
+  } else {
+    system.isolated = find_isolated(network, conductances, unknowns);
+    for (const Isolated& isolated : system.isolated) {
+      double& d = diagonal[isolated.unknown];
+      d = d > 0.0 ? 2.0 * d : 1.0;
+    }
+  }
+  system.matrix = compress(off_diagonal, diagonal);
+  return system;
+}
+
+Eigen::VectorXd right_hand_side(const PressureSystem& system, const Unknowns& unknowns,
+                                const Box& box, const Eigen::VectorXd& sources,
+                                const Eigen::VectorXd& imposed) {
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(unknowns.count);
+  for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore)
+    if (unknowns.of_pore[pore] >= 0)
+      b[unknowns.of_pore[pore]] += sources[static_cast<Eigen::Index>(pore)];
+  for (std::size_t boundary = 0; boundary < unknowns.of_boundary.size(); ++boundary)
+    if (unknowns.of_boundary[boundary] >= 0)
+      b[unknowns.of_boundary[boundary]] += boundary_of(box, static_cast<int>(boundary)).value;
+  for (const auto& coupling : system.couplings)
+    b[coupling.unknown] += coupling.conductance * imposed[coupling.pore];
+  return b;
+}
+
+}  // namespace pfv

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "network/pore_boundaries.hpp"
+#include "pfv/box.hpp"
+#include "pfv/network.hpp"
+#include "solve/linear_solver.hpp"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace pfv {
+
+/// What decides a pore's pressure.
+struct Unknowns {
+  static constexpr int imposed = -1;
+  std::vector<int> of_pore;      ///< its unknown, or `imposed`
+  std::vector<int> of_boundary;  ///< the unknown that the pores of a flux boundary share, or -1
+  int count = 0;
+};
+
+/// Numbers the unknowns. A pore on several faces takes the first of: imposed pressure, imposed flux
+/// (the first face), none. Throws InputError for a flux boundary that is left without a pore.
+Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                         const Box& box);
+
+/// Imposed pressure of each pore (Pa), 0 where none is: the mean over its boundaries with a pressure.
+Eigen::VectorXd imposed_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                                  const Box& box, double time);
+
+/// A set of pores that no open throat joins to an imposed pressure.
+struct Isolated {
+  std::vector<int> pores;
+  int unknown;  ///< the one that is held at the reference pressure
+};
+
+/// G p = b (Chareyre et al. 2012 eq. 6; thesis eq. 4.8) for the unknown pressures.
+struct PressureSystem {
+  SymmetricMatrix matrix;
+  struct Coupling {
+    int unknown, pore;  ///< a pore of imposed pressure beside an unknown one
+    double conductance;
+  };
+  std::vector<Coupling> couplings;
+  std::vector<Isolated> isolated;
+};
+
+/// Assembles G. `storage` (m³/Pa, one entry a pore, or empty) is V^f / (K_f dt) of a compressible
+/// fluid; it goes on the diagonal and leaves nothing isolated.
+PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
+                        const Unknowns& unknowns, const Eigen::VectorXd& storage);
+
+/// b = sources of each pore (m³/s) + inflow of the flux boundaries + what the imposed pressures
+/// (relative to the reference) drive.
+Eigen::VectorXd right_hand_side(const PressureSystem& system, const Unknowns& unknowns,
+                                const Box& box, const Eigen::VectorXd& sources,
+                                const Eigen::VectorXd& imposed);
+
+}  // namespace pfv
