@@ -140,7 +140,8 @@ bool FixPfv::shares_grains_with(const Fix& other) const {
 
 double FixPfv::value_of(const PfvValue& value) {
   if (value.variable.empty()) return value.number;
-  return input->variable->compute_equal(const_cast<char*>(value.variable.c_str()));
+  const int index = input->variable->find(const_cast<char*>(value.variable.c_str()));
+  return input->variable->compute_equal(index);
 }
 
 pfv::Boundary FixPfv::boundary_of(const PfvBoundary& boundary) {
@@ -277,7 +278,7 @@ void FixPfv::advance() {
 void FixPfv::after_flow_call() {
   on_root([&] {
     report_.reset();
-    files_->write(*flow_, grains_.packing(), update->ntimestep, update->get_cur_time());
+    files_->write(*flow_, grains_.packing(), update->ntimestep);
   });
   grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{}, per_atom_->array_atom);
 }
@@ -316,7 +317,6 @@ void FixPfv::write_restart(FILE* file) {
   read_host();
   PfvRestartRecord record;
   record.step = update->ntimestep;
-  record.time = update->get_cur_time();
   record.steps_since_flow = steps_since_flow_;
   record.elapsed = elapsed_;
   record.last_positions = last_positions_;
@@ -350,7 +350,7 @@ void FixPfv::restart(char* bytes) {
     if (!files_) return;  // not rank 0
     last_grains_ = std::move(record.last_grains);
     restored_ = std::move(record.flow);
-    files_->resume(record.step, record.time, std::move(record.written));
+    files_->resume(record.step, restored_->time, std::move(record.written));
   });
 }
 

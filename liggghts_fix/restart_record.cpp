@@ -39,7 +39,6 @@ class Reader {
 std::vector<double> pack(const PfvRestartRecord& record) {
   std::vector<double> data{format_number,
                            static_cast<double>(record.step),
-                           record.time,
                            record.flow.time,
                            record.flow.strain,
                            static_cast<double>(record.flow.retriangulations),
@@ -69,7 +68,6 @@ PfvRestartRecord unpack(const char* bytes) {
                           "fix another ID to start the flow anew");
   PfvRestartRecord record;
   record.step = static_cast<std::int64_t>(reader.next());
-  record.time = reader.next();
   record.flow.time = reader.next();
   record.flow.strain = reader.next();
   record.flow.retriangulations = static_cast<std::int64_t>(reader.next());

@@ -15,7 +15,6 @@ namespace LAMMPS_NS {
 
 struct PfvRestartRecord {
   std::int64_t step = 0;
-  double time = 0.0;  ///< LIGGGHTS' simulated time, s
   pfv::FlowState flow;
   int steps_since_flow = 0;
   double elapsed = 0.0;  ///< s, since the last flow step

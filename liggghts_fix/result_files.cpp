@@ -69,14 +69,14 @@ void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWritt
   profile_schedule_.resume_after(step);
 }
 
-void PfvResultFiles::write(const pfv::Flow& flow, const pfv::Packing& packing, std::int64_t step,
-                           double time) {
-  if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, step, time);
-  if (profile_ && profile_schedule_.due(step)) write_profile_row(flow, time);
+void PfvResultFiles::write(const pfv::Flow& flow, const pfv::Packing& packing,
+                           std::int64_t step) {
+  if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, step);
+  if (profile_ && profile_schedule_.due(step)) write_profile_row(flow);
 }
 
 void PfvResultFiles::write_fields(const pfv::Flow& flow, const pfv::Packing& packing,
-                                  std::int64_t step, double time) {
+                                  std::int64_t step) {
   const std::string base = fields_->path.substr(0, fields_->path.rfind(".pvd"));
   const auto pores = [](const std::string& stem, std::int64_t s) {
     return stem + "_pores_" + std::to_string(s) + ".vtu";
@@ -86,7 +86,7 @@ void PfvResultFiles::write_fields(const pfv::Flow& flow, const pfv::Packing& pac
   };
   pfv::write_network(pores(base, step), flow);
   pfv::write_spheres(grains(base, step), packing, flow.forces());
-  written_.push_back({step, time});
+  written_.push_back({step, flow.time()});
 
   std::vector<pfv::CollectionEntry> entries;
   const std::string name = file_name_of(base);
@@ -105,11 +105,11 @@ void PfvResultFiles::open_profile() {
   profile_file_ << header << '\n' << rows << std::setprecision(12);
 }
 
-void PfvResultFiles::write_profile_row(const pfv::Flow& flow, double time) {
+void PfvResultFiles::write_profile_row(const pfv::Flow& flow) {
   if (!profile_file_.is_open()) open_profile();
   const pfv::Box& box = flow.box();
   const double lower = box.lower[profile_->axis], upper = box.upper[profile_->axis];
-  profile_file_ << time;
+  profile_file_ << flow.time();
   for (int plane = 0; plane < profile_->planes; ++plane) {
     const double place = lower + relative_position(*profile_, plane) * (upper - lower);
     profile_file_ << ',' << flow.plane_pressure(profile_->axis, place);

@@ -29,7 +29,7 @@ class PfvSchedule {
 /// One instant of the .pvd collection.
 struct PfvWrittenStep {
   std::int64_t step;
-  double time;  ///< s
+  double time;  ///< of the flow, s
 };
 
 class PfvResultFiles {
@@ -37,17 +37,17 @@ class PfvResultFiles {
   /// Throws pfv::InputError where a folder is missing or cannot be written.
   explicit PfvResultFiles(const PfvSettings& settings);
 
-  /// Goes on with the files of the run that wrote the restart file at `step` and `time`.
+  /// Goes on with the files of the run that wrote the restart file at `step` and flow time `time`.
   void resume(std::int64_t step, double time, std::vector<PfvWrittenStep> written);
   const std::vector<PfvWrittenStep>& written() const { return written_; }
 
-  /// Writes what is due after a flow step. Throws pfv::FileError.
-  void write(const pfv::Flow& flow, const pfv::Packing& packing, std::int64_t step, double time);
+  /// Writes what is due after a flow step, at the flow's own time: LIGGGHTS' `time` begins anew at
+  /// each restart. Throws pfv::FileError.
+  void write(const pfv::Flow& flow, const pfv::Packing& packing, std::int64_t step);
 
  private:
-  void write_fields(const pfv::Flow& flow, const pfv::Packing& packing, std::int64_t step,
-                    double time);
-  void write_profile_row(const pfv::Flow& flow, double time);
+  void write_fields(const pfv::Flow& flow, const pfv::Packing& packing, std::int64_t step);
+  void write_profile_row(const pfv::Flow& flow);
   void open_profile();
 
   std::optional<PfvFieldOutput> fields_;
