@@ -22,6 +22,12 @@ double positive(const std::string& option, const std::string& text) {
   return value;
 }
 
+double not_negative(const std::string& option, const std::string& text) {
+  const double value = number(option, text);
+  if (value < 0) throw InputError(option + ": " + text + " is < 0: give 0 or a positive number");
+  return value;
+}
+
 Box box_of(const SolveArguments& arguments) {
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
@@ -37,7 +43,7 @@ Box box_of(const SolveArguments& arguments) {
 Fluid fluid_of(const SolveArguments& arguments) {
   Fluid fluid;
   fluid.viscosity = positive("--viscosity", arguments.viscosity);
-  fluid.density = number("--density", arguments.density);
+  fluid.density = not_negative("--density", arguments.density);
   for (std::size_t axis = 0; axis < arguments.gravity.size(); ++axis)
     fluid.gravity[static_cast<int>(axis)] = number("--gravity", arguments.gravity[axis]);
   if (arguments.bulk_modulus) {
@@ -70,10 +76,14 @@ int repeats_of(const SolveArguments& arguments) {
   return static_cast<int>(*repeats);
 }
 
-bool same_file(const std::string& one, const std::string& other) {
-  if (detail::is_stream(one)) return false;  // /dev/null may be named twice
+/// The one name that a file has, there or not yet.
+fs::path full_name(const std::string& path) {
   std::error_code none;
-  return fs::weakly_canonical(one, none) == fs::weakly_canonical(other, none);
+  return fs::weakly_canonical(fs::absolute(path, none), none);
+}
+
+bool same_file(const std::string& one, const std::string& other) {
+  return !detail::is_stream(one) && full_name(one) == full_name(other);  // not /dev/null twice
 }
 
 /// One output must neither replace another nor the packing.

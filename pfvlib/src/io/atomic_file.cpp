@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace pfv {
@@ -41,6 +42,13 @@ int fill(const std::string& path, int flags, std::string_view content) {
   return write_error ? write_error : close_error;
 }
 
+/// Whether both names lead to one file; works for pipes and devices too.
+bool is_same(const char* one, const char* other) {
+  struct stat a, b;
+  return ::stat(one, &a) == 0 && ::stat(other, &b) == 0 && a.st_dev == b.st_dev &&
+         a.st_ino == b.st_ino;
+}
+
 fs::path folder_of(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? fs::path(".") : folder;
@@ -63,15 +71,13 @@ std::string temporary_beside(const std::string& path) {
 }  // namespace
 
 bool detail::is_standard_output(const std::string& path) {
-  std::error_code none;
-  return fs::equivalent(path, "/dev/stdout", none);
+  return is_same(path.c_str(), "/dev/stdout");
 }
 
 bool detail::is_stream(const std::string& path) {
   std::error_code none;
-  const fs::file_status status = fs::status(path, none);
-  return fs::is_other(status) || is_standard_output(path) ||
-         fs::equivalent(path, "/dev/stderr", none);
+  return fs::is_other(fs::status(path, none)) || is_standard_output(path) ||
+         is_same(path.c_str(), "/dev/stderr");
 }
 
 void detail::write_file(const std::string& path, std::string_view content) {
