@@ -86,12 +86,6 @@ void PfvGrainExchange::use_mean_velocities(const PfvSnapshot& then, double elaps
   }
 }
 
-pfv::Packing PfvGrainExchange::packing() const {
-  const auto all = grains_.view();
-  if ((grains_.velocities.array() != 0.0).any()) return all;
-  return {all.ids, all.positions, all.radii, Eigen::Map<const Eigen::Matrix3Xd>(nullptr, 3, 0)};
-}
-
 PfvSnapshot PfvGrainExchange::snapshot() const {
   const auto& ids = grains_.ids;
   const auto& places = grains_.positions;

@@ -31,8 +31,7 @@ class PfvGrainExchange : protected Pointers {
   /// were not there then keep their own.
   void use_mean_velocities(const PfvSnapshot& then, double elapsed);
 
-  /// The grains as gathered; rank 0. Without velocities where all are 0.
-  pfv::Packing packing() const;
+  pfv::Packing packing() const { return grains_.view(); }    ///< as gathered; rank 0
   const Eigen::VectorXd& masses() const { return masses_; }  ///< kg; rank 0
   PfvSnapshot snapshot() const;                              ///< rank 0
 
