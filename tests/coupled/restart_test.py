@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A run that is continued from a restart file goes the way of the run that wrote it."""
+import unittest
+
+from coupled import FLOW, CoupledTest, dump, forces, largest_difference, packing
+from coupled import random_velocities, read_dump, read_thermo, restarted_head, write_data
+
+THERMO = ("thermo_style custom step f_flow f_flow[5] f_flow[7]\n"
+          "thermo_modify norm no format float %.15g\n")
+
+
+class Restart(CoupledTest):
+    def setUp(self):
+        super().setUp()
+        write_data(self.folder, packing(4), random_velocities(packing(4)))
+
+    def restarted(self, fix, run):
+        """The script of a continued run: the same settings, the grains from the restart file."""
+        return restarted_head() + fix + THERMO + dump("restarted.dump") + run
+
+    def compare(self, fix, first="run 10\n", run="run 10\n"):
+        """Runs on and restarts; returns the rows of both runs after the restart file."""
+        head = "include in.packing\n"
+        self.liggghts(head + fix + first + "write_restart file.restart\n" + THERMO +
+                      dump("continued.dump") + run)
+        continued = read_thermo((self.folder / "log.liggghts").read_text())
+        self.liggghts(self.restarted(fix, run))
+        restarted = read_thermo((self.folder / "log.liggghts").read_text())
+        self.assertEqual(restarted, [row for row in continued if "flow[7]" in row])
+        self.assertEqual((self.folder / "continued.dump").read_bytes(),
+                         (self.folder / "restarted.dump").read_bytes())
+        return restarted
+
+    def test_continued_and_restarted_run_write_the_same_bytes(self):
+        rows = self.compare(f"fix flow all pfv {FLOW}\n")
+        self.assertEqual(rows[-1]["Step"], 20)
+        self.assertGreater(rows[-1]["flow"], 0.0)
+
+    def test_compressible_pressures_are_kept(self):
+        """Uneven stored pressures: a restart that lost them would begin at another mean."""
+        rows = self.compare(f"fix flow all pfv {FLOW} bulk_modulus 1e4\n")
+        self.assertGreater(abs(rows[0]["flow[7]"]), 0.0)
+
+    def test_between_two_flow_steps(self):
+        self.compare(f"fix flow all pfv {FLOW} couple_every 4\n")
+
+    def test_counts_go_on(self):
+        rows = self.compare(f"fix flow all pfv {FLOW} retriangulate 1e-6\n")
+        # at each step but the first, which has the network of the restart file
+        self.assertEqual(rows[-1]["flow[5]"] - rows[0]["flow[5]"], 9)
+        self.assertGreater(rows[0]["flow[5]"], 0)
+
+    def test_restart_files_in_the_middle_of_a_run(self):
+        """LIGGGHTS reckons the forces of the first step with v(n), the run itself with v(n-1/2):
+        contact damping differs in the last digits there. Without contacts nothing does but the
+        volume rates of that one step."""
+        fix = f"fix flow all pfv {FLOW}\n"
+        self.liggghts("include in.packing\n" + fix + "restart 10 file.*.restart\n" +
+                      dump("continued.dump") + "run 20\n")
+        (self.folder / "file.10.restart").rename(self.folder / "file.restart")
+        self.liggghts(self.restarted(fix, "run 10\n"))
+        continued = read_dump(self.folder / "continued.dump")
+        restarted = read_dump(self.folder / "restarted.dump")
+        self.assertLess(largest_difference(forces(continued[20]), forces(restarted[20])), 1e-6)
+
+    def test_restart_before_the_first_run(self):
+        fix = f"fix flow all pfv {FLOW}\n"
+        self.liggghts("include in.packing\n" + fix + "write_restart file.restart\n" +
+                      dump("continued.dump") + "run 5\n")
+        self.liggghts(self.restarted(fix, "run 5\n"))
+        self.assertEqual((self.folder / "continued.dump").read_bytes(),
+                         (self.folder / "restarted.dump").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
