@@ -181,8 +181,9 @@ void add_output_options(CLI::App& command, SolveArguments& arguments) {
                      "what was done and how well it balances (default: not written)")
       ->option_text("FILE.json")->group(group);
   command.add_option("--vtk", arguments.vtk,
-                     "pores (pressure in Pa, volume in m3) and throats (conductance\n"
-                     "in m3/(Pa s), flux in m3/s) for ParaView (default: not written)")
+                     "pores (pressure in Pa, fluid volume in m3) and throats\n"
+                     "(conductance in m3/(Pa s), flux in m3/s) for ParaView\n"
+                     "(default: not written)")
       ->option_text("FILE.vtu")->group(group);
 }
 

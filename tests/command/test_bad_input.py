@@ -119,7 +119,7 @@ class BadInput(CommandTest):
         spheres += [(x, y, z, 0.02, -1 if z > 0.5 else 0)
                     for z in (0.03, 0.97) for x in (0.3, 0.52, 0.7) for y in (0.31, 0.53, 0.69)]
         lines += [f"{k + 1},{x},{y},{z},{r},0,0,{v}" for k, (x, y, z, r, v) in enumerate(spheres)]
-        self.refuse_packing("\n".join(lines), arguments=["--face", "zlo:pressure=0"])
+        self.refuse_packing("\n".join(lines), "cut off", arguments=["--face", "zlo:pressure=0"])
 
     def test_output_files_that_cannot_be_made(self):
         common = ["solve", "--packing", DENSE, *UNIT_BOX, *THROUGH_FLOW]

@@ -11,7 +11,8 @@
 namespace pfv {
 
 /// Reads a packing: CSV with header `id,x,y,z,radius[,vx,vy,vz]`, or a LIGGGHTS text dump (the last
-/// snapshot; columns id, x, y, z, radius, and vx, vy, vz if present, in any order).
+/// snapshot, refused where it is cut off; columns id, x, y, z, radius, and vx, vy, vz if present, in
+/// any order).
 /// Throws InputError naming file, line and field.
 PackingArrays read_packing(const std::string& path);
 
@@ -25,7 +26,7 @@ void write_forces(const std::string& path, const Packing& packing, const Forces&
 void write_report(const std::string& path, const Report& report);
 
 /// Pores and throats as a VTK unstructured grid (.vtu, appended binary): a vertex cell a pore
-/// (pressure, volume), a line cell a throat (conductance, flux).
+/// (pressure, volume of its fluid), a line cell a throat (conductance, flux).
 void write_network(const std::string& path, const Flow& flow);
 
 /// Spheres as points of a .vtu: id, radius, force, velocity.
