@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <random>
@@ -379,6 +381,18 @@ TEST(Cholmod, RefusesLatticesWithoutAnyImposedPressure) {
     solver->order(matrix);
     EXPECT_THROW(solver->factor(matrix), SolverError) << "seed " << seed;
   }
+}
+
+TEST(Cholmod, StartsNoThread) {
+  const auto threads = [] {
+    const std::filesystem::directory_iterator first("/proc/self/task");
+    return std::distance(begin(first), end(first));
+  };
+  const SymmetricMatrix matrix = lattice(24);
+  const auto before = threads();
+  solution(*make_solver(SolverKind::cholmod, OrderingKind::metis), matrix,
+           right_side(matrix.size()));
+  EXPECT_EQ(threads(), before);
 }
 
 TEST(Cholmod, AgreesWithKlu2) {

@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 
+#include <omp.h>
 #include <string>
 
 namespace pfv {
@@ -12,6 +13,20 @@ namespace {
 /// Measured on lattices of 216 to 46656 unknowns: ungrounded ones leave up to 2e-13 (conductances
 /// over ten decades), grounded ones at least 1e-7.
 constexpr double lost_pivot = 1e-12;
+
+/// Keeps CHOLMOD from opening a team of four threads for each supernode, as Debian's build does
+/// whatever OMP_NUM_THREADS says: supernodes are too small to gain from it, and waiting threads take
+/// the cores of the other ranks.
+class OneThread {
+ public:
+  OneThread() { omp_set_max_active_levels(0); }
+  ~OneThread() { omp_set_max_active_levels(levels_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int levels_ = omp_get_max_active_levels();
+};
 
 cholmod_sparse as_cholmod(const SymmetricRows& matrix) {
   cholmod_sparse view{};
@@ -73,6 +88,7 @@ void CholmodFactor::analyze(const SymmetricRows& matrix, const std::vector<int>&
 }
 
 void CholmodFactor::factorize(const SymmetricRows& matrix) {
+  const OneThread one_thread;
   cholmod_sparse view = as_cholmod(matrix);
   cholmod_factorize(&view, factor_, &common_);
   if (common_.status == CHOLMOD_NOT_POSDEF) {
@@ -99,11 +115,11 @@ void CholmodFactor::require_success(const char* phase) const {
         factor_ ? " (the factor takes " + std::to_string(entries() * sizeof(double) >> 20) + " MiB)"
                 : "";
     throw SolverError(what + " ran out of memory" + need +
-                      "; use the ordering metis, fewer spheres or more memory");
+                      "; use fewer spheres, more memory, or metis where the ordering is amd");
   }
   if (common_.status == CHOLMOD_TOO_LARGE) {
-    throw SolverError(what + ": the factor has more entries than a 32-bit integer counts; use the "
-                      "ordering metis or fewer spheres");
+    throw SolverError(what + ": the factor has more entries than a 32-bit integer counts; use "
+                      "fewer spheres, or metis where the ordering is amd");
   }
   throw SolverError(what + " failed with status " + std::to_string(common_.status));
 }

@@ -32,8 +32,8 @@ class CholmodFactor {
   void factorize(const SymmetricRows& matrix);
   /// x = A^-1 b. The workspace is kept from call to call.
   void solve(const double* b, double* x);
-  /// Entries of L, with the zeros that relaxed supernodes take in.
-  std::size_t entries() const { return static_cast<std::size_t>(common_.lnz); }
+  /// Stored entries of the analysed L, with the zeros that relaxed supernodes take in.
+  std::size_t entries() const { return factor_->xsize; }
 
  private:
   void require_success(const char* phase) const;
