@@ -1,38 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve_command.hpp"
 
+#include "coupling/grains.hpp"
+#include "coupling/phase_clock.hpp"
 #include "io/atomic_file.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <iomanip>
+#include <optional>
 #include <ostream>
+#include <vector>
 
 namespace pfv::app {
 namespace {
-
-/// CPU time of the process (all threads) and time on the wall since it was made.
-class Stopwatch {
- public:
-  double cpu_seconds() const { return cpu_now() - cpu_start_; }
-  double wall_seconds() const {
-    return std::chrono::duration<double>(Clock::now() - wall_start_).count();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static double cpu_now() {
-    std::timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-  }
-
-  double cpu_start_ = cpu_now();
-  Clock::time_point wall_start_ = Clock::now();
-};
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -48,27 +30,17 @@ StepTimes repeat_steps(Flow& flow, const Packing& packing, const SolveRequest& r
   if (request.repeat == 0) return {};
   std::vector<double> cpu, wall;
   for (int step = 0; step < request.repeat; ++step) {
-    const Stopwatch watch;
+    const double cpu_start = cpu_seconds(), wall_start = wall_seconds();
     flow.evaluate(packing, request.time_step);
-    cpu.push_back(watch.cpu_seconds());
-    wall.push_back(watch.wall_seconds());
+    cpu.push_back(cpu_seconds() - cpu_start);
+    wall.push_back(wall_seconds() - wall_start);
   }
   return {median(cpu), median(wall)};
 }
 
-/// Grains all at rest between faces at rest need no volume rates: the Flow is told so by empty
-/// velocities.
-void settle_velocities(const Box& box, PackingArrays& packing) {
-  const bool faces_move = std::any_of(box.faces.begin(), box.faces.end(),
-                                      [](const FaceCondition& face) { return face.velocity != 0; });
-  if (faces_move && packing.velocities.cols() == 0)
-    packing.velocities = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
-  if (!faces_move && packing.velocities.isZero(0)) packing.velocities.resize(3, 0);
-}
-
 /// Nothing drives the flow and nothing fixes the level of the pressure.
 bool is_unloaded(const SolveRequest& request, const Packing& packing) {
-  if (request.fluid.bulk_modulus || packing.velocities.cols() > 0) return false;
+  if (request.fluid.bulk_modulus || !at_rest(packing, request.box)) return false;
   const auto idle = [](const Boundary& boundary) {
     return boundary.kind == Boundary::Kind::sealed ||
            (boundary.kind == Boundary::Kind::flux && boundary.value == 0);
@@ -97,7 +69,7 @@ void warn(const SolveRequest& request, const Flow& flow, const Packing& packing,
     warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
   else if (counts.pinned_pores > 0)
     warnings << "pfv: warning: " << counts.pinned_pores
-             << " pores at rest have no way to a pressure: p is 0 there\n";
+             << " pores at rest have no way to a pressure: they take the mean imposed one\n";
   if (counts.degenerate_throats > 0)
     warnings << "pfv: warning: " << counts.degenerate_throats
              << " throats without positive volume, surface or area: a rule sets their"
@@ -128,10 +100,9 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
 }  // namespace
 
 void solve(const SolveRequest& request, std::ostream& out, std::ostream& warnings) {
-  const Stopwatch reading;
-  PackingArrays arrays = read_packing(request.packing);
-  settle_velocities(request.box, arrays);
-  const double read_seconds = reading.cpu_seconds();
+  const double start = cpu_seconds();
+  const PackingArrays arrays = read_packing(request.packing);
+  const double read_seconds = cpu_seconds() - start;
 
   const Packing packing = arrays.view();
   Flow flow(request.box, request.fluid, request.options);

@@ -121,7 +121,7 @@ std::string escaped(const std::string& text) {
 void write_network(const std::string& path, const Flow& flow) {
   const PoreNetwork& network = flow.network();
   VtuFile file(network.pores(), network.pores() + network.throats());
-  add_points(file, network.pore_centres);
+  add_points(file, network.pore_centres.colwise() + network.origin);
   add_network_cells(file, network);
   add_network_values(file, flow);
   detail::write_file(path, file.text());
