@@ -4,6 +4,7 @@
 Each test runs in a fresh temporary folder. Environment: PFV_BIN, the folder of liggghts-pfv,
 libliggghts_pfv.so and pfv.
 """
+import json
 import math
 import os
 import pathlib
@@ -47,7 +48,9 @@ def write_data(folder, grains, velocities=None, density=2600.0):
     lines += [f"{n} 1 {2 * r!r} {density} {x!r} {y!r} {z!r}" for n, x, y, z, r in grains]
     if velocities:
         lines += ["", "Velocities", ""]
-        lines += [f"{n} {v[0]!r} {v[1]!r} {v[2]!r} 0 0 0" for n, v in velocities.items()]
+        for n, *_ in grains:
+            v = velocities.get(n, (0.0, 0.0, 0.0))
+            lines.append(f"{n} {v[0]!r} {v[1]!r} {v[2]!r} 0 0 0")
     (folder / "packing.data").write_text("\n".join(lines) + "\n")
 
 
@@ -148,13 +151,17 @@ class CoupledTest(unittest.TestCase):
         for part in parts:
             self.assertIn(part, errors[0])
 
-    def pfv_forces(self, packing_file, *options):
-        """{id: total force} of `pfv solve` on a packing in the test's folder."""
-        box = [str(v) for v in (0.0, EDGE) * 3]
-        words = [str(BIN / "pfv"), "solve", "--packing", packing_file, "--box", *box,
-                 "--viscosity", "0.01", "--forces", "forces.csv", *options]
+    def pfv_solve(self, packing_file, *options, box=(0.0, EDGE) * 3):
+        """(report, {id: total force}) of `pfv solve` on a packing in the test's folder."""
+        words = [str(BIN / "pfv"), "solve", "--packing", packing_file, "--box",
+                 *[repr(v) for v in box], "--viscosity", "0.01", "--forces", "forces.csv",
+                 "--report", "report.json", *options]
         done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, timeout=HANG)
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = (self.folder / "forces.csv").read_text().splitlines()[1:]
         rows = [line.split(",") for line in lines]
-        return {int(row[0]): [float(value) for value in row[1:4]] for row in rows}
+        return (json.loads((self.folder / "report.json").read_text()),
+                {int(row[0]): [float(value) for value in row[1:4]] for row in rows})
+
+    def pfv_forces(self, packing_file, *options, **box):
+        return self.pfv_solve(packing_file, *options, **box)[1]

@@ -59,7 +59,7 @@ class Ranks(CoupledTest):
         n, x, y, z, radius = grains[7]
         grains.append((999, x, y, z, radius))
         write_data(self.folder, grains)
-        script = "include in.packing\npair_style none\n" + FIX + "run 0\n"
+        script = "include in.packing\n" + FIX + "run 0\n"
         for ranks in (1, 2):
             self.refused(script, "8", "999", ranks=ranks)
 
