@@ -3,7 +3,6 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -18,6 +17,9 @@ using Wide = boost::multiprecision::number<
 
 /// Below this determinant (of rows of length one) rounding could exceed 1e-12 of the cell.
 constexpr double sliver_determinant = 1e-3;
+
+/// Below this one the cell is flat.
+constexpr double flat_determinant = 1e-6;
 
 template <class Number>
 struct Row {
@@ -101,23 +103,24 @@ Eigen::Vector3d inside(const Eigen::Vector3d& point, const std::array<Vertex, 4>
 
 }  // namespace
 
-Eigen::Matrix3Xd cell_centres(const Triangulation& triangulation, const Spheres& spheres) {
+CellCentres cell_centres(const Triangulation& triangulation, const Spheres& spheres) {
   const int cells = static_cast<int>(triangulation.vertices.size());
-  Eigen::Matrix3Xd centres(3, cells);
-  std::vector<int> flat;
+  CellCentres centres{Eigen::Matrix3Xd(3, cells), std::vector<char>(cells, 0)};
+  std::vector<int> unsolved;
   for (int c = 0; c < cells; ++c) {
     const auto& cell = triangulation.vertices[c];
     Eigen::Vector3d y = Eigen::Vector3d::Zero();
     double quality = 0.0;
     if (!solve(plane_rows<double>(cell, spheres), y, quality) || quality < sliver_determinant)
-      if (!solve(plane_rows<Wide>(cell, spheres), y, quality)) flat.push_back(c);
-    centres.col(c) = inside(spheres.centres.col(cell[0]) + y, cell, spheres);
+      if (!solve(plane_rows<Wide>(cell, spheres), y, quality)) unsolved.push_back(c);
+    centres.flat[c] = quality < flat_determinant;
+    centres.places.col(c) = inside(spheres.centres.col(cell[0]) + y, cell, spheres);
   }
   // an exactly flat cell lies between cells with one dual vertex: it takes theirs
-  for (const int c : flat)
+  for (const int c : unsolved)
     for (const int neighbour : triangulation.neighbours[c])
-      if (neighbour >= 0 && std::find(flat.begin(), flat.end(), neighbour) == flat.end()) {
-        centres.col(c) = centres.col(neighbour);
+      if (neighbour >= 0 && !centres.flat[neighbour]) {
+        centres.places.col(c) = centres.places.col(neighbour);
         break;
       }
   return centres;

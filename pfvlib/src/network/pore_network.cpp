@@ -14,8 +14,10 @@ namespace pfv {
 
 namespace {
 
-/// Distance below which two dual vertices are one, in mean sphere spacings.
-constexpr double merge_distance = 1e-8;
+/// Distance below which two dual vertices are one, in mean sphere spacings. The throat between them
+/// would conduct some 1e6 times more than its neighbours, so that to join them changes pressures by
+/// that little, while keeping them apart would cost the balances six digits.
+constexpr double merge_distance = 1e-6;
 
 struct Facet {
   std::array<Vertex, 3> vertices;
@@ -42,31 +44,58 @@ double dual_length(const Facet& facet, const Eigen::Matrix3Xd& centres, const Sp
       .dot(unit_normal(facet.vertices, spheres));
 }
 
-void join_cells_into_pores(PoreNetwork& network, const std::vector<Facet>& facets,
-                           const Spheres& spheres) {
-  const int cells = network.cells();
+/// Joins cells whose dual vertices are one, and each flat cell to the neighbour whose dual vertex is
+/// nearest: the polygon that a flat cell splits in two sheets becomes one throat again.
+DisjointSets join_cells(const PoreNetwork& network, const std::vector<Facet>& facets,
+                        const Spheres& spheres, const std::vector<char>& flat) {
   const double spacing = std::cbrt(spheres.edges.prod() / std::max(1, spheres.size()));
-  DisjointSets sets(cells);
-  for (const Facet& facet : facets)
-    if (dual_length(facet, network.cell_centres, spheres) < merge_distance * spacing)
-      sets.join(facet.cells[0], facet.cells[1]);
-
-  network.cell_pore.assign(cells, -1);
-  std::vector<int> first_cell;
-  for (int c = 0; c < cells; ++c) {
-    const int root = sets.find(c);  // the smallest of the set, so it has its pore already
-    if (root == c) {
-      network.cell_pore[c] = static_cast<int>(first_cell.size());
-      first_cell.push_back(c);
-    } else {
-      network.cell_pore[c] = network.cell_pore[root];
+  DisjointSets sets(network.cells());
+  std::vector<double> nearest(network.cells(), std::numeric_limits<double>::infinity());
+  std::vector<int> neighbour(network.cells(), -1);
+  for (const Facet& facet : facets) {
+    const double length = dual_length(facet, network.cell_centres, spheres);
+    if (length < merge_distance * spacing) sets.join(facet.cells[0], facet.cells[1]);
+    for (int side = 0; side < 2; ++side) {
+      const int cell = facet.cells[side];
+      if (!flat[cell] || !(length < nearest[cell])) continue;
+      nearest[cell] = length;
+      neighbour[cell] = facet.cells[1 - side];
     }
   }
-  network.pore_centres.resize(3, static_cast<Eigen::Index>(first_cell.size()));
-  for (std::size_t p = 0; p < first_cell.size(); ++p)
-    network.pore_centres.col(static_cast<Eigen::Index>(p)) = network.cell_centres.col(first_cell[p]);
-  network.pore_faces.assign(first_cell.size(), 0);
-  for (int c = 0; c < cells; ++c)
+  for (int c = 0; c < network.cells(); ++c)
+    if (neighbour[c] >= 0) sets.join(c, neighbour[c]);
+  return sets;
+}
+
+/// The centre of a pore is the dual vertex of one of its cells: not a flat one if it has others, and
+/// one with as many walls as possible, so that it lies on the faces that the pore touches.
+void choose_pore_centres(PoreNetwork& network, int pores, const std::vector<char>& flat) {
+  std::vector<int> chosen(pores, -1), rank(pores, -1);
+  for (int c = 0; c < network.cells(); ++c) {
+    const auto& vertices = network.cell_vertices[c];
+    const auto walls = static_cast<int>(std::count_if(vertices.begin(), vertices.end(), is_wall));
+    const int pore = network.cell_pore[c], own = walls + (flat[c] ? 0 : 4);
+    if (own <= rank[pore]) continue;
+    rank[pore] = own;
+    chosen[pore] = c;
+  }
+  network.pore_centres.resize(3, pores);
+  for (int pore = 0; pore < pores; ++pore)
+    network.pore_centres.col(pore) = network.cell_centres.col(chosen[pore]);
+}
+
+void join_cells_into_pores(PoreNetwork& network, const std::vector<Facet>& facets,
+                           const Spheres& spheres, const std::vector<char>& flat) {
+  DisjointSets sets = join_cells(network, facets, spheres, flat);
+  network.cell_pore.assign(network.cells(), -1);
+  int pores = 0;
+  for (int c = 0; c < network.cells(); ++c) {
+    const int root = sets.find(c);  // the smallest of the set, so it has its pore already
+    network.cell_pore[c] = root == c ? pores++ : network.cell_pore[root];
+  }
+  choose_pore_centres(network, pores, flat);
+  network.pore_faces.assign(pores, 0);
+  for (int c = 0; c < network.cells(); ++c)
     for (const Vertex vertex : network.cell_vertices[c])
       if (is_wall(vertex))
         network.pore_faces[network.cell_pore[c]] |=
@@ -133,11 +162,12 @@ PoreNetwork build_network(const Spheres& spheres, const Eigen::Vector3d& origin)
   std::vector<Facet> facets = list_facets(triangulation);
   PoreNetwork network;
   network.origin = origin;
-  network.cell_centres = cell_centres(triangulation, spheres);
+  CellCentres centres = cell_centres(triangulation, spheres);
+  network.cell_centres = std::move(centres.places);
   network.cell_vertices = std::move(triangulation.vertices);
   network.cell_neighbours = std::move(triangulation.neighbours);
   network.hidden = std::move(triangulation.hidden);
-  join_cells_into_pores(network, facets, spheres);
+  join_cells_into_pores(network, facets, spheres, centres.flat);
   group_facets_into_throats(network, facets);
   return network;
 }

@@ -7,7 +7,8 @@
 namespace pfv {
 
 /// Packing and box -> pores and throats (Chareyre et al. 2012, sec. 2). Cells that share one dual
-/// vertex (distance below 1e-8 of the mean sphere spacing) become one pore.
+/// vertex (distance below 1e-6 of the mean sphere spacing) become one pore, and flat cells join a
+/// neighbour, so that a lattice and the same lattice displaced by rounding give the same network.
 /// Throws InputError when two spheres have one centre.
 PoreNetwork build_network(const Spheres& spheres, const Eigen::Vector3d& origin);
 

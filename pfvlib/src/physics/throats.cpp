@@ -94,7 +94,11 @@ double disc_part(const std::array<Vertex, 3>& facet, int corner, const Spheres& 
   return area_in_disc(flat.polygon, radius);
 }
 
-/// The two pyramids of a facet: on cell 0 and on cell 1.
+Eigen::Vector3d pore_centre(const PoreNetwork& network, int f, int side) {
+  return network.pore_centres.col(network.cell_pore[network.facet_cells[f][side]]);
+}
+
+/// The two pyramids of a facet, on either side.
 struct Halves {
   std::array<double, 2> height;             ///< signed distance of P from the facet
   std::array<double, 2> volume{0.0, 0.0};   ///< of the pyramid, solid included
@@ -111,8 +115,7 @@ void add_sphere(Halves& halves, const PoreNetwork& network, const Spheres& spher
   const Eigen::Vector3d u = spheres.towards(k, facet[(corner + 1) % 3]);
   const Eigen::Vector3d v = spheres.towards(k, facet[(corner + 2) % 3]);
   for (int side = 0; side < 2; ++side) {
-    const Eigen::Vector3d to_centre =
-        network.cell_centres.col(network.facet_cells[f][side]) - spheres.centres.col(k);
+    const Eigen::Vector3d to_centre = pore_centre(network, f, side) - spheres.centres.col(k);
     const double angle = (side == 0 ? -1.0 : 1.0) * solid_angle(u, v, to_centre);
     halves.phi[side] -= radius * radius * radius * angle / 3.0;
     halves.gamma[side] += radius * radius * angle;
@@ -142,11 +145,10 @@ void add_wall(Halves& halves, const PoreNetwork& network, const PoreBoundaries& 
 Halves measure_halves(const PoreNetwork& network, const PoreBoundaries& boundaries,
                       const Spheres& spheres, int f, double area, const Eigen::Vector3d& normal) {
   const auto& facet = network.facet_vertices[f];
-  const auto& cells = network.facet_cells[f];
   const Eigen::Vector3d corner = spheres.centres.col(facet[0]);
   Halves halves;
-  halves.height = {normal.dot(corner - network.cell_centres.col(cells[0])),
-                   normal.dot(network.cell_centres.col(cells[1]) - corner)};
+  halves.height = {normal.dot(corner - pore_centre(network, f, 0)),
+                   normal.dot(pore_centre(network, f, 1) - corner)};
   for (int side = 0; side < 2; ++side)
     halves.volume[side] = halves.phi[side] = area * halves.height[side] / 3.0;
   for (int k = 0; k < 3; ++k) {
@@ -206,21 +208,13 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
 
 }  // namespace
 
+// Facets inside a merged pore carry no flow; seen from its one centre their two pyramids cancel.
 Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
                         const Spheres& spheres) {
   Throats throats;
   resize(throats, network);
   for (int t = 0; t < network.throats(); ++t)
     measure_throat(throats, network, boundaries, spheres, t);
-  // facets inside a merged pore carry no flow but bound part of its volume and surface
-  for (int f = network.throat_facets.back(); f < network.facets(); ++f) {
-    const auto& facet = network.facet_vertices[f];
-    const Halves halves =
-        measure_halves(network, boundaries, spheres, f, area_vector(facet, spheres).norm(),
-                       unit_normal(facet, spheres));
-    throats.facet_gamma[f] = halves.gamma_of_vertex;
-    add_to_pores(throats, network, halves, f);
-  }
   return throats;
 }
 
