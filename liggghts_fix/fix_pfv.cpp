@@ -218,21 +218,21 @@ void FixPfv::prepare_flow(const pfv::Box& box) {
   restored_.reset();
 }
 
-void FixPfv::update_gravity() {
+Eigen::Vector3d FixPfv::gravity() const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < modify->nfix; ++i) {
-    auto* gravity = dynamic_cast<FixGravity*>(modify->fix[i]);
-    if (!gravity) continue;
+    auto* fix = dynamic_cast<FixGravity*>(modify->fix[i]);
+    if (!fix) continue;
     Eigen::Vector3d one;
-    gravity->get_gravity(one.data());
+    fix->get_gravity(one.data());
     sum += one;
   }
-  settings_.fluid.gravity = sum;
+  return sum;
 }
 
 /// The forces of the present state, without advancing the flow: a run begins.
 void FixPfv::setup(int) {
-  update_gravity();
+  settings_.fluid.gravity = gravity();
   read_host();
   if (steps_since_flow_ == 0) last_positions_ = faces_.positions();
   on_root([&] {
@@ -253,6 +253,8 @@ void FixPfv::post_force(int) {
 }
 
 void FixPfv::advance() {
+  if (gravity() != settings_.fluid.gravity)
+    error->fix_error(FLERR, this, "gravity has changed within a run; change it between runs");
   read_host();
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)

@@ -70,7 +70,7 @@ class FixPfv : public Fix {
   void advance();
   void prepare_flow(const pfv::Box& box);
   void place_faces(pfv::Box& box);
-  void update_gravity();
+  Eigen::Vector3d gravity() const;
   void after_flow_call();
   void apply_forces();
   void push_meshes();

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What scripts do with a fix: load, remove, replace, run again, change, clear."""
+import math
 import shutil
 import unittest
 
@@ -115,6 +116,23 @@ class Control(CoupledTest):
         rows = read_thermo((self.folder / "log.liggghts").read_text())
         self.assertEqual(rows[1]["flow[5]"], 0.0)
         self.assertEqual(rows[-1]["flow[5]"], 10.0)
+
+    def test_gravity_may_change_between_runs(self):
+        sealed = FLOW.replace("pressure 10", "sealed").replace("pressure 0", "sealed")
+        self.liggghts(HEAD + "unfix integr\nvelocity all set 0 0 0\nfix g all gravity 9.81 vector 0 "
+                      f"0 -1\nfix flow all pfv {sealed}\nrun 0\nunfix g\nfix g all gravity 4.0 "
+                      "vector 1 0 0\n" + dump("d.dump") + "run 0\n")
+        for row in read_dump(self.folder / "d.dump")[0].values():
+            lift = 1000 * 4 / 3 * math.pi * row[3]**3 * 4.0
+            self.assertAlmostEqual(row[7], -lift, delta=1e-12 * lift)
+            self.assertAlmostEqual(row[9], 0.0, delta=1e-12 * lift)
+
+    def test_run_without_its_setup(self):
+        frozen = HEAD + "unfix integr\n" + FIX + THERMO
+        self.liggghts(frozen + "run 5\nrun 7 pre no\n")
+        last = read_thermo((self.folder / "log.liggghts").read_text())[-1]
+        self.liggghts(frozen + "run 12\n")
+        self.assertEqual(last, read_thermo((self.folder / "log.liggghts").read_text())[-1])
 
     def test_end_of_run_prints_phases_and_papers(self):
         screen = self.liggghts(HEAD + FIX + "run 3\n")

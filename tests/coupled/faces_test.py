@@ -4,7 +4,7 @@ import unittest
 
 from coupled import EDGE, FLOW, CoupledTest, dump, faces, forces, largest_difference, packing
 from coupled import read_dump, read_thermo, write_data
-from plates import square, write_plate
+from plates import write_plate
 
 MODEL = "wall/gran model hooke/stiffness tangential history"
 HEAD = "include in.packing\n"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The forces that grains receive in a run are those of the library on the same grains."""
+import math
 import unittest
 
 from coupled import EDGE, FLOW, CoupledTest, dump, forces, largest_difference, packing
@@ -54,7 +55,7 @@ class Forces(CoupledTest):
         self.liggghts(f"include in.packing\nfix flow all pfv {FLOW}\n{dump('d.dump')}run 1\n")
         steps = read_dump(self.folder / "d.dump")
         for n, *_, radius in grains:
-            mass = 2600 * 4 / 3 * 3.141592653589793 * radius**3
+            mass = 2600 * 4 / 3 * math.pi * radius**3
             for k in range(3):
                 expected = 0.5e-5 / mass * (steps[0][n][7 + k] + steps[1][n][7 + k])
                 self.assertAlmostEqual(steps[1][n][4 + k], expected, delta=1e-10 * abs(expected))
@@ -112,7 +113,7 @@ class Forces(CoupledTest):
             self.liggghts("include in.packing\nfix g all gravity 9.81 vector 0 0 -1\n"
                           f"fix flow all pfv {words}\n{dump('d.dump')}run 0\n")
             for row in read_dump(self.folder / "d.dump")[0].values():
-                lift = 1000 * 4 / 3 * 3.141592653589793 * row[3]**3 * 9.81
+                lift = 1000 * 4 / 3 * math.pi * row[3]**3 * 9.81
                 self.assertAlmostEqual(row[9], factor * lift, delta=1e-12 * lift)
 
     def test_thermo_output(self):

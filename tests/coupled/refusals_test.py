@@ -156,6 +156,11 @@ class Refusals(CoupledTest):
             "fix g all gravity 9.81 vector 0 0 -1\n"
             "fix b all buoyancy density 1000 dim z level 0.2\n"))
 
+    def test_gravity_that_changes_in_a_run(self):
+        self.refuse(FLOW, "gravity", before=(
+            "variable g equal 9.81*(1+step)\nfix g all gravity v_g vector 0 0 -1\n"),
+            after="run 2\n")
+
     def test_extent_without_grains(self):
         flow = "viscosity 0.01 " + faces(zlo="extent pressure 1", zhi="extent pressure 0")
         self.refused(f"include in.packing\ngroup nobody id 999\nfix flow nobody pfv {flow}\nrun 0\n",

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The files that the fix writes itself: fields for ParaView, pressure profiles."""
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from coupled import FLOW, CoupledTest, dump, packing, random_velocities, read_dump
+from coupled import read_thermo, restarted_head, write_data
+
+HEAD = "include in.packing\n"
+
+
+class Output(CoupledTest):
+    def setUp(self):
+        super().setUp()
+        write_data(self.folder, packing(4), random_velocities(packing(4)))
+        (self.folder / "post").mkdir()
+
+    def collection(self, name="post/flow.pvd"):
+        """[(time, part, file)] of a .pvd file."""
+        root = ElementTree.parse(self.folder / name).getroot()
+        return [(float(entry.get("timestep")), entry.get("part"), entry.get("file"))
+                for entry in root.iter("DataSet")]
+
+    def profile(self, name="p.csv"):
+        lines = (self.folder / name).read_text().splitlines()
+        return lines[0], [[float(value) for value in line.split(",")] for line in lines[1:]]
+
+    def test_fields_every_n_steps_with_their_time(self):
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} output 10 post/flow.pvd\nrun 25\nrun 5\n")
+        entries = self.collection()
+        self.assertEqual([(part, file) for _, part, file in entries], [
+            (str(part), f"flow_{what}_{step}.vtu") for step in (0, 10, 20, 30)
+            for part, what in enumerate(("pores", "grains"))])
+        for (time, _, file), step in zip(entries[::2], (0, 10, 20, 30)):
+            self.assertAlmostEqual(time, step * 1e-5, delta=1e-15)
+        for _, _, file in entries:
+            self.assertGreater((self.folder / "post" / file).stat().st_size, 1000)
+
+    def test_grains_hold_the_forces_of_the_run(self):
+        """Read back with VTK's own reader."""
+        try:
+            from vtkmodules.util.numpy_support import vtk_to_numpy
+            from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+        except ImportError:
+            self.skipTest("VTK's Python module is not installed")
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} output 10 post/flow.pvd\n" +
+                      dump("d.dump") + "run 10\n")
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(str(self.folder / "post" / "flow_grains_10.vtu"))
+        reader.Update()
+        data = reader.GetOutput().GetPointData()
+        ids, force = (vtk_to_numpy(data.GetArray(name)) for name in ("id", "force"))
+        rows = read_dump(self.folder / "d.dump")[10]
+        self.assertEqual(len(ids), len(rows))
+        for number, vector in zip(ids, force):
+            self.assertEqual(list(vector), rows[int(number)][7:10])
+
+    def test_profile_rows(self):
+        """Pressures fall from the face at 10 Pa to the one at 0 Pa."""
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} profile z 4 5 p.csv\nrun 12\nrun 3\n")
+        header, rows = self.profile()
+        self.assertEqual(header, "time,0.125,0.375,0.625,0.875")
+        self.assertEqual([round(row[0] / 1e-5) for row in rows], [0, 5, 10, 15])
+        for row in rows:
+            self.assertTrue(10 >= row[1] > row[2] > row[3] > row[4] >= 0)
+
+    def test_profile_along_x_is_level(self):
+        """Across the flow the pressure is the mean one, up to the disorder of the packing."""
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} profile x 3 1 p.csv\nrun 0\n")
+        _, rows = self.profile()
+        for pressure in rows[0][1:]:
+            self.assertAlmostEqual(pressure, 5.0, delta=1.0)
+
+    def test_files_with_a_flow_step_every_few_steps(self):
+        """Written after the first flow step that reaches each multiple."""
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} couple_every 4 profile z 2 5 p.csv\nrun 16\n")
+        _, rows = self.profile()
+        self.assertEqual([round(row[0] / 1e-5) for row in rows], [0, 8, 12, 16])
+
+    def test_new_run_begins_its_files_anew(self):
+        (self.folder / "p.csv").write_text("old\n1\n2\n")
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} profile z 2 5 p.csv\nrun 5\n")
+        header, rows = self.profile()
+        self.assertEqual((header, len(rows)), ("time,0.25,0.75", 2))
+
+    def test_restarted_run_goes_on_with_its_files(self):
+        """Also when the first run went on beyond the restart file."""
+        fix = f"fix flow all pfv {FLOW} profile z 2 5 p.csv output 5 post/flow.pvd\n"
+        self.liggghts(HEAD + fix + "run 10\nwrite_restart file.restart\nrun 10\n")
+        whole = (self.folder / "p.csv").read_bytes()
+        entries = self.collection()
+        self.assertEqual(len(entries), 10)
+        self.liggghts(restarted_head() + fix + "run 10\n")
+        self.assertEqual((self.folder / "p.csv").read_bytes(), whole)
+        self.assertEqual(self.collection(), entries)
+
+    def test_restarted_run_starts_a_profile_of_another_kind_anew(self):
+        fix = f"fix flow all pfv {FLOW} profile z 2 5 p.csv\n"
+        self.liggghts(HEAD + fix + "run 10\nwrite_restart file.restart\n")
+        self.liggghts(restarted_head() + fix.replace("z 2 5", "z 3 5") + "run 10\n")
+        header, rows = self.profile()
+        self.assertEqual(len(header.split(",")), 4)
+        self.assertEqual([round(row[0] / 1e-5) for row in rows], [15, 20])
+
+    def test_asking_for_more_does_not_change_the_run(self):
+        plain = HEAD + f"fix flow all pfv {FLOW}\n" + dump("d.dump") + "run 10\n"
+        self.liggghts(plain)
+        first = (self.folder / "d.dump").read_bytes()
+        full = plain.replace(FLOW, FLOW + " output 2 post/flow.pvd profile z 3 2 p.csv")
+        self.liggghts(full.replace("run 10", "thermo_style custom step f_flow[1] f_flow[6]\n"
+                                   "thermo 1\nrun 10"))
+        self.assertEqual((self.folder / "d.dump").read_bytes(), first)
+        self.assertEqual(len(read_thermo((self.folder / "log.liggghts").read_text())), 11)
+
+
+if __name__ == "__main__":
+    unittest.main()
