@@ -13,6 +13,7 @@
 #include "group.h"
 #include "input.h"
 #include "modify.h"
+#include "universe.h"
 #include "update.h"
 #include "variable.h"
 
@@ -88,6 +89,9 @@ void FixPfv::fail_together(std::string message) {
 // -------------------------------------------------------------------------------------- refusals
 
 void FixPfv::check_environment() {
+  // The classes of another version may have another layout in memory than the headers used here.
+  if (!std::strstr(universe->version, "LIGGGHTS-PUBLIC 3.8"))
+    error->fix_error(FLERR, this, "was built for LIGGGHTS-PUBLIC 3.8; build it for this version");
   if (std::strcmp(update->unit_style, "si") != 0)
     error->fix_error(FLERR, this, "needs `units si`");
   if (!atom->radius_flag || !atom->rmass_flag || !atom->tag_enable)

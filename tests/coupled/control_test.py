@@ -134,6 +134,23 @@ class Control(CoupledTest):
         self.liggghts(frozen + "run 12\n")
         self.assertEqual(last, read_thermo((self.folder / "log.liggghts").read_text())[-1])
 
+    def test_two_flows_in_groups_without_a_common_grain(self):
+        head = (HEAD + "region left block -1 0.05 -1 1 -1 1 units box\ngroup left region left\n"
+                "group right subtract all left\n")
+        left = FLOW.replace(f"face xhi plane {EDGE}", "face xhi plane 0.05")
+        right = FLOW.replace("face xlo plane 0.0", "face xlo plane 0.05").replace(
+            "pressure 10", "pressure 20")
+        one, other = f"fix one left pfv {left}\n", f"fix flow right pfv {right}\n"
+        self.liggghts(head + other + dump("alone.dump") + "run 0\n")
+        self.liggghts(head + one + other + dump("both.dump") + "run 0\n")
+        self.assertEqual((self.folder / "alone.dump").read_bytes(),
+                         (self.folder / "both.dump").read_bytes())
+        self.liggghts(head + one.replace("fix one", "fix flow") + dump("alone.dump") + "run 0\n")
+        self.liggghts(head + one.replace("fix one", "fix flow") + other.replace("fix flow", "fix two")
+                      + dump("both.dump") + "run 0\n")
+        self.assertEqual((self.folder / "alone.dump").read_bytes(),
+                         (self.folder / "both.dump").read_bytes())
+
     def test_end_of_run_prints_phases_and_papers(self):
         screen = self.liggghts(HEAD + FIX + "run 3\n")
         for text in ("triangulate", "factor", "solve", "92:473-493", "38:51-71"):

@@ -102,6 +102,12 @@ class Output(CoupledTest):
         self.assertEqual(len(header.split(",")), 4)
         self.assertEqual([round(row[0] / 1e-5) for row in rows], [15, 20])
 
+    def test_file_that_cannot_be_written_stops_the_run(self):
+        (self.folder / "post" / "flow_pores_0.vtu" / "in_the_way").mkdir(parents=True)
+        script = HEAD + f"fix flow all pfv {FLOW} output 10 post/flow.pvd\nrun 5\n"
+        for ranks in (1, 2):
+            self.refused(script, "flow_pores_0.vtu", ranks=ranks)
+
     def test_asking_for_more_does_not_change_the_run(self):
         plain = HEAD + f"fix flow all pfv {FLOW}\n" + dump("d.dump") + "run 10\n"
         self.liggghts(plain)
