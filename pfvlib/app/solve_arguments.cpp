@@ -28,12 +28,27 @@ double not_negative(const std::string& option, const std::string& text) {
   return value;
 }
 
+/// "x", "x,y", "z,x,y": the axes along which the packing repeats.
+void apply_periodic(const SolveArguments& arguments, Box& box) {
+  for (const std::string& axis : arguments.periodic) {
+    if (axis != "x" && axis != "y" && axis != "z")
+      throw InputError("--periodic: unknown axis " + detail::quoted(axis) +
+                       ": give some of x, y, z, with commas between them");
+    bool& periodic = box.periodic[axis[0] - 'x'];
+    if (periodic) throw InputError("--periodic: axis " + axis + " occurs twice");
+    periodic = true;
+  }
+  for (std::size_t axis = 0; axis < arguments.gradient.size(); ++axis)
+    box.pressure_gradient[static_cast<int>(axis)] = number("--gradient", arguments.gradient[axis]);
+}
+
 Box box_of(const SolveArguments& arguments) {
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
     box.lower[axis] = number("--box", arguments.box[2 * axis]);
     box.upper[axis] = number("--box", arguments.box[2 * axis + 1]);
   }
+  apply_periodic(arguments, box);
   apply_faces(arguments.faces, wall_named("--wall", arguments.wall), box);
   apply_patches(arguments.patches, box);
   check(box);
@@ -126,6 +141,12 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
                                 "along the two other axes in the order x y z, and one of\n"
                                 "pressure=P (Pa) | flux=Q (m3/s) | sealed (default: none)"))
       ->option_text("NAME:A0,A1,B0,B1:ITEM")->group(group);
+  command.add_option("--periodic", arguments.periodic,
+                     "axes along which the packing repeats (default: none)")
+      ->delimiter(',')->allow_extra_args(false)->option_text("x,y,z")->group(group);
+  command.add_option("--gradient", arguments.gradient,
+                     "macroscopic pressure gradient along periodic axes, Pa/m (default 0 0 0)")
+      ->type_size(3)->expected(1)->option_text("GX GY GZ")->group(group);
   command.add_option("--wall", arguments.wall,
                      "wall type of every face without wall= of its own (default no_slip)")
       ->option_text("no_slip|symmetry")->group(group);

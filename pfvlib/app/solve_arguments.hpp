@@ -16,7 +16,7 @@ namespace pfv::app {
 /// would take "1abc" and "nan".
 struct SolveArguments {
   std::string packing;
-  std::vector<std::string> box, faces, patches, gravity;
+  std::vector<std::string> box, faces, patches, gravity, periodic, gradient;
   std::string wall = "no_slip", viscosity = "1e-3", density = "1000", conductance, solver, ordering;
   std::optional<std::string> bulk_modulus, time_step, repeat;
   std::optional<std::string> forces, report, vtk;

@@ -53,8 +53,8 @@ struct Stages {
 
   explicit Stages(int n) {
     const PackingArrays& packing = packing_of(n);
-    spheres = {packing.ids, packing.positions, packing.radii, Eigen::Vector3d::Ones()};
-    network = build_network(spheres, Eigen::Vector3d::Zero());
+    spheres = {packing.ids, packing.positions, packing.radii, Eigen::Vector3d::Ones(), {}};
+    network = build_network(spheres, Eigen::Vector3d::Zero()).network;
     boundaries = find_pore_boundaries(network, box);
     throats = measure_throats(network, boundaries, spheres);
     conductance =

@@ -76,6 +76,11 @@ struct Box {
   Eigen::Vector3d upper = Eigen::Vector3d::Ones();
   std::array<FaceCondition, 6> faces;
   std::vector<Patch> patches;
+  /// Axes along which the packing repeats; their two faces do not exist (they stay sealed, at rest).
+  std::array<bool, 3> periodic{false, false, false};
+  /// Macroscopic pressure gradient along the periodic axes, Pa/m: the pressure is a periodic field plus
+  /// gradient . x, and fluid flows against it.
+  Eigen::Vector3d pressure_gradient = Eigen::Vector3d::Zero();
 
   FaceCondition& operator[](Face face) { return faces[static_cast<int>(face)]; }
   const FaceCondition& operator[](Face face) const { return faces[static_cast<int>(face)]; }
@@ -89,6 +94,7 @@ struct Box {
     return edge[(axis + 1) % 3] * edge[(axis + 2) % 3];
   }
   double volume() const { return (upper - lower).prod(); }
+  bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
 };
 
 /// Throws InputError when the box is flat, inverted or not finite, or when a boundary value, a face

@@ -24,6 +24,10 @@ struct PoreNetwork {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< lower corner of the box: all places below
                                                      ///< are relative to it, m
 
+  /// The sphere that a vertex k >= 0 stands for: k itself without periodic axes; with them vertices are
+  /// images, of which several may belong to one sphere.
+  std::vector<int> vertex_sphere;
+
   // one entry a cell
   std::vector<std::array<Vertex, 4>> cell_vertices;  ///< spheres first, positively oriented
   std::vector<std::array<int, 4>> cell_neighbours;   ///< opposite each vertex; -1 outside the box
@@ -38,10 +42,12 @@ struct PoreNetwork {
   // inside merged pores come after the last throat
   std::vector<std::array<Vertex, 3>> facet_vertices;  ///< spheres first; normal by the right-hand
                                                       ///< rule points from cell 0 to cell 1
-  std::vector<std::array<int, 2>> facet_cells;
+  std::vector<std::array<int, 2>> facet_cells;  ///< -1: an image of a cell
 
   // one entry a throat (throat_facets has one more)
   std::vector<std::array<int, 2>> throat_pores;
+  Eigen::Matrix3Xd throat_offsets;  ///< 3 x T, or 3 x 0 without periodic axes: what is added to the
+                                    ///< centre of the second pore to get its image at the throat, m
   std::vector<int> throat_facets;
 
   std::vector<int> hidden;  ///< spheres whose power cell is empty: no vertices of any cell
@@ -50,6 +56,11 @@ struct PoreNetwork {
   int pores() const { return static_cast<int>(pore_faces.size()); }
   int facets() const { return static_cast<int>(facet_vertices.size()); }
   int throats() const { return static_cast<int>(throat_pores.size()); }
+
+  Eigen::Vector3d throat_offset(int throat) const {
+    return throat_offsets.cols() == 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                      : Eigen::Vector3d(throat_offsets.col(throat));
+  }
 };
 
 }  // namespace pfv

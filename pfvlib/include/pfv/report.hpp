@@ -44,6 +44,7 @@ struct Report {
   double inflow = 0, outflow = 0, volume_rate_sum = 0, storage_rate = 0;
   double mass_error = 0;
   std::optional<double> permeability;
+  std::optional<Eigen::Matrix3d> permeability_tensor;  ///< m², periodic boxes; 0 along other axes
   Eigen::Vector3d force_sum = Eigen::Vector3d::Zero();
   double force_balance_error = 0;
   double residual = 0;

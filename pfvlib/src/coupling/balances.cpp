@@ -18,12 +18,10 @@ Eigen::VectorXd pore_inflows(const FlowData& flow) {
   if (flow.storage.size() > 0)
     inflow.array() +=
         flow.storage.array() * (flow.pressures.array() - flow.previous_pressures.array());
+  const std::vector<double> fluxes = throat_fluxes(flow);
   for (int t = 0; t < network.throats(); ++t) {
-    const auto [i, j] = network.throat_pores[t];
-    const double q = flow.built->conductances.value[t] *
-                     (flow.relative_pressures[i] - flow.relative_pressures[j]);
-    inflow[i] += q;
-    inflow[j] -= q;
+    inflow[network.throat_pores[t][0]] += fluxes[t];
+    inflow[network.throat_pores[t][1]] -= fluxes[t];
   }
   return inflow;
 }
@@ -55,10 +53,19 @@ double mass_error(const Totals& totals, double volume_rate, double storage_rate)
   return scale > 0.0 ? net / scale : 0.0;
 }
 
+/// -mu U . g / g² for the macroscopic gradient g of a periodic box.
+std::optional<double> permeability_along_gradient(const FlowData& flow) {
+  const Eigen::Vector3d& gradient = flow.box.pressure_gradient;
+  const Eigen::Vector3d velocity =
+      superficial_velocity(flow.built->network, throat_fluxes(flow), flow.box.volume());
+  return -flow.fluid.viscosity * velocity.dot(gradient) / gradient.squaredNorm();
+}
+
 /// mu Q L / (dp S) between two opposite open faces (method: Darcy's law); absent where the flow is not
 /// steady or not one-dimensional.
 std::optional<double> permeability(const FlowData& flow, const Totals& totals) {
   if (flow.moving || flow.storage.size() > 0 || !flow.box.patches.empty()) return {};
+  if (!flow.box.pressure_gradient.isZero(0.0)) return permeability_along_gradient(flow);
   int open_axis = -1, open = 0;
   for (const Face face : all_faces) {
     const Boundary& boundary = flow.box[face].boundary;
@@ -68,7 +75,7 @@ std::optional<double> permeability(const FlowData& flow, const Totals& totals) {
     if (open == 1) open_axis = axis_of(face);
     if (axis_of(face) != open_axis) return {};
   }
-  if (open != 2) return {};
+  if (open != 2 || flow.box.periodic[open_axis]) return {};
   std::array<double, 2> pressure{0.0, 0.0};
   for (const auto& contact : flow.built->boundaries.contacts)
     if (contact.face / 2 == open_axis)
@@ -79,6 +86,18 @@ std::optional<double> permeability(const FlowData& flow, const Totals& totals) {
   const double area = flow.box.area(static_cast<Face>(2 * open_axis));
   const double rate = 0.5 * (totals.inflow + totals.outflow);
   return flow.fluid.viscosity * rate * length / (difference * area);
+}
+
+/// What the macroscopic gradient pushes into the pores of one period, across the surface that parts
+/// them from their images; grains and walls carry it.
+Eigen::Vector3d driving_force(const FlowData& flow) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  if (flow.box.pressure_gradient.isZero(0.0)) return sum;
+  const PoreNetwork& network = flow.built->network;
+  for (int t = 0; t < network.throats(); ++t)
+    sum += flow.box.pressure_gradient.dot(network.throat_offset(t)) *
+           flow.built->throats.area[t] * flow.built->throats.normal.col(t);
+  return sum;
 }
 
 double force_balance_error(const FlowData& flow) {
@@ -93,7 +112,10 @@ double force_balance_error(const FlowData& flow) {
   }
   const double largest_pressure =
       flow.pressures.size() > 0 ? flow.pressures.cwiseAbs().maxCoeff() : 0.0;
-  return largest_pressure > 0.0 ? sum.norm() / (largest_pressure * largest_area) : 0.0;
+  const Eigen::Vector3d driven = driving_force(flow);
+  sum += driven;
+  const double scale = std::max(largest_pressure * largest_area, driven.norm());
+  return scale > 0.0 ? sum.norm() / scale : 0.0;
 }
 
 double residual(const FlowData& flow) {
@@ -110,7 +132,8 @@ std::int64_t peak_memory() {
 
 void fill_geometry(Report& report, FlowData& flow) {
   BuiltNetwork& built = *flow.built;
-  if (!built.solid) built.solid = solid_union(built.network, built.grains.spheres);
+  if (!built.solid)
+    built.solid = solid_union(built.network, built.vertices, built.grains.spheres);
   report.spheres = static_cast<std::int64_t>(flow.packing_ids.size());
   report.hidden = static_cast<std::int64_t>(built.network.hidden.size());
   report.outside = report.spheres - built.grains.spheres.size();
@@ -123,6 +146,51 @@ void fill_geometry(Report& report, FlowData& flow) {
 }
 
 }  // namespace
+
+std::vector<double> throat_fluxes(const FlowData& flow) {
+  const PoreNetwork& network = flow.built->network;
+  std::vector<double> fluxes(network.throats());
+  for (int t = 0; t < network.throats(); ++t)
+    fluxes[t] = flow.built->conductances.value[t] *
+                driving_pressure(network, t, flow.relative_pressures, flow.box.pressure_gradient);
+  return fluxes;
+}
+
+Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vector<double>& fluxes,
+                                     double volume) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    sum += fluxes[t] * (network.pore_centres.col(j) + network.throat_offset(t) -
+                        network.pore_centres.col(i));
+  }
+  return sum / volume;
+}
+
+/// One solve an axis, on the kept factor, for a unit gradient and no other drive.
+std::optional<Eigen::Matrix3d> permeability_tensor(const FlowData& flow) {
+  if (!flow.box.any_periodic() || flow.moving || flow.storage.size() > 0) return {};
+  for (const auto& contact : flow.built->boundaries.contacts)  // a pressure there excludes a gradient
+    if (boundary_of(flow.box, contact.boundary).kind != Boundary::Kind::sealed) return {};
+  const BuiltNetwork& built = *flow.built;
+  const PoreNetwork& network = built.network;
+  Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!flow.box.periodic[axis]) continue;
+    const Eigen::Vector3d gradient = Eigen::Vector3d::Unit(axis);
+    const Eigen::VectorXd pressures = homogeneous_pressures(
+        built, gradient_sources(network, built.conductances.value, gradient));
+    std::vector<double> fluxes(network.throats());
+    for (int t = 0; t < network.throats(); ++t)
+      fluxes[t] =
+          built.conductances.value[t] * driving_pressure(network, t, pressures, gradient);
+    tensor.col(axis) = -flow.fluid.viscosity *
+                       superficial_velocity(network, fluxes, flow.box.volume());
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (!flow.box.periodic[axis]) tensor.row(axis).setZero();
+  return tensor;
+}
 
 std::vector<double> contact_inflows(const FlowData& flow) {
   const auto& contacts = flow.built->boundaries.contacts;
@@ -181,6 +249,7 @@ Report make_report(FlowData& flow) {
     report.storage_rate = flow.storage.dot(flow.pressures - flow.previous_pressures);
   report.mass_error = mass_error(totals, report.volume_rate_sum, report.storage_rate);
   report.permeability = permeability(flow, totals);
+  report.permeability_tensor = permeability_tensor(flow);
   if (flow.forces.total.cols() > 0) report.force_sum = flow.forces.total.rowwise().sum();
   report.force_balance_error = force_balance_error(flow);
   report.residual = residual(flow);

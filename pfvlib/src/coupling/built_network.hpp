@@ -22,6 +22,7 @@ namespace pfv {
 struct BuiltNetwork {
   ActiveGrains grains;
   PoreNetwork network;
+  Spheres vertices;  ///< what the network's vertices stand for: the grains, or those and their images
   PoreBoundaries boundaries;
   Throats throats;
   Conductances conductances;
@@ -36,9 +37,14 @@ struct BuiltNetwork {
   std::optional<ForceMatrix> pressure_force_matrix;
   std::optional<SurfacePressure> surface_pressure;
   std::optional<SolidUnion> solid;
-  std::optional<double> time_step_limit;
+  std::optional<double> time_step_limit;  ///< for `limit_masses`
+  Eigen::VectorXd limit_masses;
   std::vector<double> strain_volume;  ///< volume that a pore's strain refers to, bounded below
 };
+
+/// Pressures (Pa) that sources (m³/s, one entry a pore) cause on the kept factor where every imposed
+/// pressure is 0.
+Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources);
 
 /// Fluid volume of a pore, but at least 1 % of its smallest sphere: about a tenth of what a pore
 /// between such spheres holds. Without a bound a nearly empty pore would ask for a new network at

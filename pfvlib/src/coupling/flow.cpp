@@ -16,7 +16,7 @@ namespace {
 
 /// What a change of leads to a new network: everything of a boundary but its values.
 bool same_kinds(const Box& a, const Box& b) {
-  if (a.patches.size() != b.patches.size()) return false;
+  if (a.patches.size() != b.patches.size() || a.periodic != b.periodic) return false;
   for (std::size_t i = 0; i < a.patches.size(); ++i)
     if (a.patches[i].face != b.patches[i].face ||
         a.patches[i].rectangle != b.patches[i].rectangle ||
@@ -109,7 +109,7 @@ const Eigen::VectorXd& Flow::pore_pressures() const {
 double Flow::pressure_at(const Eigen::Vector3d& place) const {
   data_->require_result();
   const BuiltNetwork& built = *data_->built;
-  const Spheres& spheres = built.grains.spheres;
+  const Spheres& spheres = built.vertices;
   const Eigen::Vector3d relative = place - built.network.origin;
   if (built.network.cells() == 0 || !(relative.array() >= 0.0).all() ||
       !(relative.array() <= spheres.edges.array()).all())
@@ -121,7 +121,7 @@ double Flow::pressure_at(const Eigen::Vector3d& place) const {
 double Flow::plane_pressure(int axis, double position) const {
   data_->require_result();
   const BuiltNetwork& built = *data_->built;
-  const Spheres& spheres = built.grains.spheres;
+  const Spheres& spheres = built.vertices;
   const double relative = position - built.network.origin[axis];
   const auto coordinate = [&](Vertex vertex) {
     return wall_number(vertex) % 2 ? spheres.edges[axis] : 0.0;
@@ -153,25 +153,25 @@ double Flow::mean_pressure() const {
 double Flow::time_step_limit(const Eigen::VectorXd& masses) {
   data_->require_result();
   BuiltNetwork& built = *data_->built;
-  if (built.time_step_limit) return *built.time_step_limit;
+  if (masses.size() != static_cast<Eigen::Index>(data_->packing_ids.size()))
+    throw InputError("time_step_limit: " + std::to_string(masses.size()) + " masses for " +
+                     std::to_string(data_->packing_ids.size()) + " spheres; give one a sphere");
+  if (!(masses.array() > 0.0).all() || !masses.allFinite())
+    throw InputError("time_step_limit: a mass is not a positive number; give kg");
+  if (built.time_step_limit && masses == built.limit_masses) return *built.time_step_limit;
+  built.limit_masses = masses;
   const int spheres = built.grains.spheres.size();
   double eigenvalue = 0.0;
   if (built.unknowns.count > 0 && spheres > 0) {
-    const VolumeRateMatrix rates_matrix = volume_rate_matrix(built.network, built.grains.spheres);
+    const VolumeRateMatrix rates_matrix = volume_rate_matrix(built.network, built.vertices);
     const ForceMatrix force = force_matrix(built.network, built.throats, spheres, {true, true});
     Box fixed = data_->box;
     for (FaceCondition& face : fixed.faces) face.velocity = 0.0;
     const auto drag = [&](const Eigen::VectorXd& v) {
       const Eigen::VectorXd rates =
           volume_rates(rates_matrix, built.network, v.reshaped(3, spheres), fixed);
-      Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x(built.unknowns.count);
-      for (int p = 0; p < built.network.pores(); ++p)
-        if (built.unknowns.of_pore[p] >= 0) b[built.unknowns.of_pore[p]] += rates[p];
-      built.solver->solve(b, x);
-      Eigen::VectorXd pressures = Eigen::VectorXd::Zero(built.network.pores());
-      for (int p = 0; p < built.network.pores(); ++p)
-        if (built.unknowns.of_pore[p] >= 0) pressures[p] = x[built.unknowns.of_pore[p]];
-      Eigen::Matrix3Xd acceleration = multiply(force, pressures).leftCols(spheres);
+      Eigen::Matrix3Xd acceleration =
+          multiply(force, homogeneous_pressures(built, rates)).leftCols(spheres);
       for (int i = 0; i < spheres; ++i) acceleration.col(i) /= masses[built.grains.columns[i]];
       return Eigen::VectorXd(acceleration.reshaped());
     };
@@ -203,13 +203,7 @@ const std::vector<double>& Flow::throat_conductances() const {
 
 std::vector<double> Flow::throat_fluxes() const {
   data_->require_result();
-  const PoreNetwork& network = data_->built->network;
-  std::vector<double> fluxes(network.throats());
-  for (int t = 0; t < network.throats(); ++t)
-    fluxes[t] = data_->built->conductances.value[t] *
-                (data_->relative_pressures[network.throat_pores[t][0]] -
-                 data_->relative_pressures[network.throat_pores[t][1]]);
-  return fluxes;
+  return pfv::throat_fluxes(*data_);
 }
 
 Eigen::VectorXd Flow::pore_volumes() const {

@@ -6,7 +6,9 @@
 #include "pfv/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <sstream>
 
@@ -43,7 +45,48 @@ std::vector<int> spheres_around(const BuiltNetwork& built, const std::vector<int
   return spheres;
 }
 
+/// The vertices of each cell by the ids of their grains, ascending, with the number of the cell.
+std::vector<std::pair<std::array<std::int64_t, 4>, int>> named_cells(const BuiltNetwork& built) {
+  constexpr std::int64_t walls = std::numeric_limits<std::int64_t>::min();
+  std::vector<std::pair<std::array<std::int64_t, 4>, int>> names(built.network.cells());
+  for (int c = 0; c < built.network.cells(); ++c) {
+    names[c].second = c;
+    for (int i = 0; i < 4; ++i) {
+      const Vertex vertex = built.network.cell_vertices[c][i];
+      names[c].first[i] =
+          is_wall(vertex) ? walls + wall_number(vertex) : built.vertices.ids[vertex];
+    }
+    std::sort(names[c].first.begin(), names[c].first.end());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// For each cell of `now` the cell of `old` with the same vertices, or -1.
+std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& now) {
+  const auto before = named_cells(old), after = named_cells(now);
+  std::vector<int> survivors(now.network.cells(), -1);
+  auto next = before.begin();
+  for (const auto& [name, cell] : after) {
+    while (next != before.end() && next->first < name) ++next;
+    if (next != before.end() && next->first == name) survivors[cell] = next->second;
+  }
+  return survivors;
+}
+
 }  // namespace
+
+Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources) {
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x(built.unknowns.count);
+  const auto& unknown = built.unknowns.of_pore;
+  for (std::size_t p = 0; p < unknown.size(); ++p)
+    if (unknown[p] >= 0) b[unknown[p]] += sources[static_cast<Eigen::Index>(p)];
+  if (built.unknowns.count > 0) built.solver->solve(b, x);
+  Eigen::VectorXd pressures = Eigen::VectorXd::Zero(sources.size());
+  for (std::size_t p = 0; p < unknown.size(); ++p)
+    if (unknown[p] >= 0) pressures[static_cast<Eigen::Index>(p)] = x[unknown[p]];
+  return pressures;
+}
 
 std::vector<double> strain_volumes(const PoreNetwork& network, const Throats& throats,
                                    const Spheres& spheres) {
@@ -133,8 +176,11 @@ bool FlowData::needs_rebuild(const Packing& packing) const {
     const auto i = static_cast<Eigen::Index>(next++);
     const double radius = grains.spheres.radii[i];
     const double grown = std::abs(packing.radii[k] - radius);
-    const Eigen::Vector3d moved = packing.positions.col(k) - built->network.origin -
-                                  grains.spheres.centres.col(i);
+    Eigen::Vector3d moved = packing.positions.col(k) - built->network.origin -
+                            grains.spheres.centres.col(i);
+    for (int axis = 0; axis < 3; ++axis)  // the host may have wrapped it
+      if (box.periodic[axis])
+        moved[axis] = std::remainder(moved[axis], grains.spheres.edges[axis]);
     // negated, so that a number that is not finite leads to a rebuild, whose checks name it
     if (!(3.0 * grown <= options.retriangulation_strain * radius) ||
         !(moved.squaredNorm() <= radius * radius))
@@ -149,12 +195,14 @@ void FlowData::build(const Packing& packing) {
   {
     const PhaseClock clock(seconds.triangulate);
     fresh->grains = select_grains(packing, box, options.outside);
-    fresh->network = build_network(fresh->grains.spheres, box.lower);
+    PoreSpace space = build_network(fresh->grains.spheres, box.lower);
+    fresh->network = std::move(space.network);
+    fresh->vertices = std::move(space.spheres);
     ++counts.triangulate;
   }
   {
     const PhaseClock clock(seconds.throats);
-    const Spheres& spheres = fresh->grains.spheres;
+    const Spheres& spheres = fresh->vertices;
     fresh->boundaries = find_pore_boundaries(fresh->network, box);
     fresh->throats = measure_throats(fresh->network, fresh->boundaries, spheres);
     fresh->conductances = conductances(options.conductance, fluid.viscosity, fresh->network,
@@ -170,15 +218,28 @@ void FlowData::build(const Packing& packing) {
 }
 
 void FlowData::take_over_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values) {
-  const Spheres& spheres = old.grains.spheres;
   if (old.network.cells() == 0 || built->network.pores() == 0) return;
+  // a cell that survives keeps its pressure: its dual vertex need not lie in it, so its place is no
+  // guide to it
+  const std::vector<int> survivors = surviving_cells(old, *built);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(built->network.pores());
+  Eigen::VectorXi count = Eigen::VectorXi::Zero(built->network.pores());
+  for (int c = 0; c < built->network.cells(); ++c)
+    if (survivors[c] >= 0) {
+      sum[built->network.cell_pore[c]] += old_values[old.network.cell_pore[survivors[c]]];
+      ++count[built->network.cell_pore[c]];
+    }
   int cell = 0;
   for (int p = 0; p < built->network.pores(); ++p) {
+    if (count[p] > 0) {
+      old_pressures[p] = sum[p] / count[p];
+      continue;
+    }
     const Eigen::Vector3d place =
         (built->network.origin + built->network.pore_centres.col(p) - old.network.origin)
             .cwiseMax(0.0)
-            .cwiseMin(spheres.edges);
-    cell = locate(old.network, spheres, place, cell);
+            .cwiseMin(old.vertices.edges);
+    cell = locate(old.network, old.vertices, place, cell);
     old_pressures[p] = old_values[old.network.cell_pore[cell]];
   }
   // the sum of V^f p is what the storage term conserves (thesis eq. 4.8 with compressibility)
@@ -191,6 +252,7 @@ void FlowData::assemble_and_factor(double step) {
   const bool compressible = fluid.bulk_modulus.has_value();
   if (built->solver && (!compressible || step == built->storage_dt)) return;
   const bool new_pattern = !built->solver;
+  built->time_step_limit.reset();  // it belongs to the factor
   {
     const PhaseClock clock(seconds.assemble);
     storage = compressible ? Eigen::VectorXd(storage_volumes(built->throats) /
@@ -217,7 +279,9 @@ void FlowData::assemble_and_factor(double step) {
 }
 
 void FlowData::refuse_undetermined(bool moving_now) const {
-  if (fluid.bulk_modulus || any_boundary(box, Boundary::Kind::pressure)) return;
+  // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
+  if (fluid.bulk_modulus || box.any_periodic() || any_boundary(box, Boundary::Kind::pressure))
+    return;
   if (moving_now)
     throw InputError("the grains or faces move, the fluid is incompressible, and no face or patch "
                      "has a pressure: nothing determines the pressure; give a pressure to a face, "
@@ -236,21 +300,28 @@ void FlowData::refuse_isolated() const {
       net -= rates[pore];
       gross += std::abs(rates[pore]);
     }
-    for (std::size_t b = 0; b < built->unknowns.of_boundary.size(); ++b)
-      if (built->unknowns.of_boundary[b] >= 0 &&
-          built->unknowns.of_pore[isolated.pores.front()] == built->unknowns.of_boundary[b]) {
-        net += boundary_of(box, static_cast<int>(b)).value;
-        gross += std::abs(boundary_of(box, static_cast<int>(b)).value);
-      }
+    for (std::size_t b = 0; b < built->unknowns.of_boundary.size(); ++b) {
+      const int shared = built->unknowns.of_boundary[b];
+      const bool fed = shared >= 0 && std::any_of(isolated.pores.begin(), isolated.pores.end(),
+                                                  [&](int pore) {
+                                                    return built->unknowns.of_pore[pore] == shared;
+                                                  });
+      if (!fed) continue;
+      net += boundary_of(box, static_cast<int>(b)).value;
+      gross += std::abs(boundary_of(box, static_cast<int>(b)).value);
+    }
     // rates are sums of area times velocity: their own round-off is no change of volume
     const double noise = 1e-12 * rates.cwiseAbs().maxCoeff();
     if (std::abs(net) <= 1e-10 * gross + noise) continue;
+    std::ostringstream rate;
+    rate << net;
     throw InputError(
         std::to_string(isolated.pores.size()) + " pore(s) near " +
         place_of(*built, isolated.pores.front()) + " between " +
-        sphere_list(built->grains.spheres.ids, spheres_around(*built, isolated.pores)) +
-        " are cut off from every pressure while their volume changes by " +
-        std::to_string(-net) + " m3/s; give the fluid a bulk modulus, or reduce the overlaps");
+        sphere_list(built->vertices.ids, spheres_around(*built, isolated.pores)) +
+        " are cut off from every pressure, but " + rate.str() +
+        " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk "
+        "modulus, or reduce the overlaps");
   }
 }
 
@@ -261,7 +332,7 @@ void FlowData::solve_pressures(const Packing& packing, double at_time) {
   if (moving) {
     const PhaseClock clock(seconds.assemble);
     if (!built->volume_rate_matrix)
-      built->volume_rate_matrix = volume_rate_matrix(built->network, built->grains.spheres);
+      built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
     rates = volume_rates(*built->volume_rate_matrix, built->network,
                          active_velocities(packing, built->grains.columns), box);
     ++counts.volume_rate;
@@ -288,6 +359,8 @@ void FlowData::solve_pressures(const Packing& packing, double at_time) {
   previous_pressures = old_pressures;
   if (storage.size() > 0)
     sources.array() += storage.array() * (old_pressures.array() - reference);
+  if (!box.pressure_gradient.isZero(0.0))
+    sources += gradient_sources(built->network, built->conductances.value, box.pressure_gradient);
   right_side = right_hand_side(built->system, built->unknowns, box, sources, imposed);
   solution.resize(built->unknowns.count);
   if (built->unknowns.count > 0) {
@@ -315,17 +388,24 @@ void FlowData::compute_forces(const Packing& packing) {
       built->pressure_force_matrix =
           force_matrix(built->network, built->throats, active, {true, false});
     if (options.sphere_pressure)
-      built->surface_pressure = surface_pressure(built->network, built->grains.spheres);
+      built->surface_pressure = surface_pressure(built->network, built->vertices, active);
   }
   const Eigen::Index n = packing.size();
   const auto spread = [&](const Eigen::Matrix3Xd& from, Eigen::Matrix3Xd& to) {
     to = Eigen::Matrix3Xd::Zero(3, n);
     for (int i = 0; i < active; ++i) to.col(built->grains.columns[i]) = from.col(i);
   };
-  fluid_forces = multiply(*built->force_matrix, relative_pressures);
+  const auto of_pressures = [&](const ForceMatrix& matrix, ForceParts parts) {
+    Eigen::Matrix3Xd result = multiply(matrix, relative_pressures);
+    if (!box.pressure_gradient.isZero(0.0))
+      result += gradient_forces(built->network, built->throats, active, parts,
+                                box.pressure_gradient);
+    return result;
+  };
+  fluid_forces = of_pressures(*built->force_matrix, {true, true});
   spread(fluid_forces, forces.total);
   if (options.split_forces) {
-    spread(multiply(*built->pressure_force_matrix, relative_pressures), forces.pressure);
+    spread(of_pressures(*built->pressure_force_matrix, {true, false}), forces.pressure);
     forces.viscous = forces.total - forces.pressure;
   }
   if (options.buoyancy && !fluid.gravity.isZero(0.0)) {

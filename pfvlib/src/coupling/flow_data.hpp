@@ -58,6 +58,15 @@ struct FlowData {
 std::array<FaceResult, 6> face_results(const FlowData& flow);
 /// Flow rate (m³/s) into the box through each boundary contact.
 std::vector<double> contact_inflows(const FlowData& flow);
+/// Superficial velocity (m/s) through a periodic box: the sum over throats of flow rate times the way
+/// from pore to pore, over the volume.
+Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vector<double>& fluxes,
+                                     double volume);
+/// Permeability tensor (m²) along the periodic axes; absent without them, where grains move, and where
+/// other faces are open.
+std::optional<Eigen::Matrix3d> permeability_tensor(const FlowData& flow);
+/// Flow rate of each throat, from its first pore to its second, m³/s.
+std::vector<double> throat_fluxes(const FlowData& flow);
 /// Everything a report holds, from the last call.
 Report make_report(FlowData& flow);
 

@@ -62,8 +62,11 @@ std::string sphere_list(const Packing::Ids& ids, const std::vector<int>& columns
 }
 
 bool is_inside(const Packing& packing, Eigen::Index column, const Box& box) {
-  const auto x = packing.positions.col(column).array();
-  return (x > box.lower.array()).all() && (x < box.upper.array()).all();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x = packing.positions(axis, column);
+    if (!box.periodic[axis] && !(x > box.lower[axis] && x < box.upper[axis])) return false;
+  }
+  return true;
 }
 
 ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains outside) {
@@ -89,10 +92,15 @@ ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains
   spheres.centres.resize(3, n);
   spheres.radii.resize(n);
   spheres.edges = box.upper - box.lower;
+  spheres.periodic = box.periodic;
   for (Eigen::Index i = 0; i < n; ++i) {
     const int k = grains.columns[i];
     spheres.ids[i] = packing.ids[k];
     spheres.centres.col(i) = packing.positions.col(k) - box.lower;
+    for (int axis = 0; axis < 3; ++axis)  // back into the periodic cell
+      if (box.periodic[axis])
+        spheres.centres(axis, i) -=
+            spheres.edges[axis] * std::floor(spheres.centres(axis, i) / spheres.edges[axis]);
     spheres.radii[i] = packing.radii[k];
   }
   return grains;

@@ -98,6 +98,25 @@ void check_extent(const Box& box, const Patch& patch, int axis, int first,
                      interval(box.lower[axis], box.upper[axis]) + ": move it onto the face");
 }
 
+void check_periodic(const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string where = std::string("pressure gradient along ") + axis_names[axis];
+    require_finite(box.pressure_gradient[axis], where);
+    if (!box.periodic[axis] && box.pressure_gradient[axis] != 0.0)
+      throw InputError(where + ": that axis is not periodic; make it periodic, or give its faces "
+                               "pressures");
+  }
+  for (const Face face : all_faces)
+    if (box.periodic[axis_of(face)] &&
+        (box[face].boundary.kind != Boundary::Kind::sealed || box[face].velocity != 0.0))
+      throw InputError(std::string("face ") + name_of(face) +
+                       " stands on a periodic axis: it can have neither a boundary nor a velocity");
+  for (const Patch& patch : box.patches)
+    if (box.periodic[axis_of(patch.face)])
+      throw InputError(std::string("a patch on face ") + name_of(patch.face) +
+                       " stands on a periodic axis: remove it");
+}
+
 void check_patch(const Box& box, std::size_t number) {
   const Patch& patch = box.patches[number];
   const std::string where =
@@ -145,6 +164,7 @@ void check(const Box& box) {
     check(box[face].boundary, where);
   }
   for (std::size_t number = 0; number < box.patches.size(); ++number) check_patch(box, number);
+  check_periodic(box);
 }
 
 void check(const Fluid& fluid) {

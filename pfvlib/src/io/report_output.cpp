@@ -28,6 +28,11 @@ Json faces(const Report& report) {
   return json;
 }
 
+Json tensor(const std::optional<Eigen::Matrix3d>& tensor) {
+  if (!tensor) return nullptr;
+  return {vector(tensor->row(0)), vector(tensor->row(1)), vector(tensor->row(2))};
+}
+
 Json counts(const Counts& counts) {
   return {{"triangulate", counts.triangulate},
           {"order", counts.order},
@@ -68,6 +73,7 @@ Json to_json(const Report& report) {
           {"storage_rate", number(report.storage_rate)},
           {"mass_error", number(report.mass_error)},
           {"permeability", number(report.permeability)},
+          {"permeability_tensor", tensor(report.permeability_tensor)},
           {"force_sum", vector(report.force_sum)},
           {"force_balance_error", number(report.force_balance_error)},
           {"residual", number(report.residual)},

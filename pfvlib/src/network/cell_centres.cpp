@@ -3,6 +3,7 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -92,7 +93,10 @@ bool solve(const std::array<Row<Number>, 3>& rows, Eigen::Vector3d& y, double& q
 /// Exact topology puts every dual vertex inside the box; what is left outside is rounding.
 Eigen::Vector3d inside(const Eigen::Vector3d& point, const std::array<Vertex, 4>& cell,
                        const Spheres& spheres) {
-  Eigen::Vector3d moved = point.cwiseMax(0.0).cwiseMin(spheres.edges);
+  Eigen::Vector3d moved = point;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!spheres.periodic[axis])
+      moved[axis] = std::min(std::max(moved[axis], 0.0), spheres.edges[axis]);
   for (const Vertex vertex : cell) {
     if (!is_wall(vertex)) continue;
     const int face = wall_number(vertex);

@@ -4,6 +4,7 @@
 #include "network/spheres.hpp"
 
 #include <array>
+#include <utility>
 
 namespace pfv {
 
@@ -15,6 +16,13 @@ inline std::array<Vertex, 3> facet_opposite(const std::array<Vertex, 4>& cell, i
   // rotate walls to the end: a rotation keeps the orientation
   while (is_wall(facet[0]) || (is_wall(facet[1]) && !is_wall(facet[2])))
     facet = {facet[1], facet[2], facet[0]};
+  return facet;
+}
+
+/// The same facet with its normal turned round; spheres stay first.
+inline std::array<Vertex, 3> reversed(std::array<Vertex, 3> facet) {
+  const bool slab = is_wall(facet[1]);
+  std::swap(facet[slab ? 1 : 0], facet[slab ? 2 : 1]);
   return facet;
 }
 

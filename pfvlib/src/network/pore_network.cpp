@@ -4,11 +4,13 @@
 #include "network/cell_centres.hpp"
 #include "network/disjoint_sets.hpp"
 #include "network/facets.hpp"
+#include "network/periodic_images.hpp"
 #include "network/triangulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace pfv {
 
@@ -47,8 +49,7 @@ double dual_length(const Facet& facet, const Eigen::Matrix3Xd& centres, const Sp
 /// Joins cells whose dual vertices are one, and each flat cell to the neighbour whose dual vertex is
 /// nearest: the polygon that a flat cell splits in two sheets becomes one throat again.
 DisjointSets join_cells(const PoreNetwork& network, const std::vector<Facet>& facets,
-                        const Spheres& spheres, const std::vector<char>& flat) {
-  const double spacing = std::cbrt(spheres.edges.prod() / std::max(1, spheres.size()));
+                        const Spheres& spheres, const std::vector<char>& flat, double spacing) {
   DisjointSets sets(network.cells());
   std::vector<double> nearest(network.cells(), std::numeric_limits<double>::infinity());
   std::vector<int> neighbour(network.cells(), -1);
@@ -85,8 +86,9 @@ void choose_pore_centres(PoreNetwork& network, int pores, const std::vector<char
 }
 
 void join_cells_into_pores(PoreNetwork& network, const std::vector<Facet>& facets,
-                           const Spheres& spheres, const std::vector<char>& flat) {
-  DisjointSets sets = join_cells(network, facets, spheres, flat);
+                           const Spheres& spheres, const std::vector<char>& flat,
+                           double spacing) {
+  DisjointSets sets = join_cells(network, facets, spheres, flat, spacing);
   network.cell_pore.assign(network.cells(), -1);
   int pores = 0;
   for (int c = 0; c < network.cells(); ++c) {
@@ -105,10 +107,7 @@ void join_cells_into_pores(PoreNetwork& network, const std::vector<Facet>& facet
 /// Turns a facet round: cell 0 is the one of the pore with the smaller number.
 Facet towards_larger_pore(Facet facet, const std::vector<int>& cell_pore) {
   if (cell_pore[facet.cells[0]] <= cell_pore[facet.cells[1]]) return facet;
-  std::swap(facet.cells[0], facet.cells[1]);
-  const bool slab = is_wall(facet.vertices[1]);
-  std::swap(facet.vertices[slab ? 1 : 0], facet.vertices[slab ? 2 : 1]);
-  return facet;
+  return {reversed(facet.vertices), {facet.cells[1], facet.cells[0]}};
 }
 
 /// Pieces of the polygon between two pores stand together and make one throat.
@@ -146,7 +145,7 @@ std::pair<double, int> outside_by(const PoreNetwork& network, const Spheres& sph
                                   const Eigen::Vector3d& place, int cell) {
   std::pair<double, int> worst{-std::numeric_limits<double>::infinity(), 0};
   for (int i = 0; i < 4; ++i) {
-    if (network.cell_neighbours[cell][i] < 0) continue;
+    if (i == 0 && is_wall(network.cell_vertices[cell][1])) continue;  // a corner of the box
     const auto facet = facet_opposite(network.cell_vertices[cell], i);
     const double distance =
         (place - spheres.centres.col(facet[0])).dot(unit_normal(facet, spheres));
@@ -155,21 +154,45 @@ std::pair<double, int> outside_by(const PoreNetwork& network, const Spheres& sph
   return worst;
 }
 
-}  // namespace
-
-PoreNetwork build_network(const Spheres& spheres, const Eigen::Vector3d& origin) {
+/// The network of spheres (or of all images) as they stand.
+PoreNetwork network_of(const Spheres& spheres, double spacing) {
   Triangulation triangulation = triangulate(spheres);
   std::vector<Facet> facets = list_facets(triangulation);
   PoreNetwork network;
-  network.origin = origin;
+  network.vertex_sphere.resize(spheres.size());
+  std::iota(network.vertex_sphere.begin(), network.vertex_sphere.end(), 0);
   CellCentres centres = cell_centres(triangulation, spheres);
   network.cell_centres = std::move(centres.places);
   network.cell_vertices = std::move(triangulation.vertices);
   network.cell_neighbours = std::move(triangulation.neighbours);
   network.hidden = std::move(triangulation.hidden);
-  join_cells_into_pores(network, facets, spheres, centres.flat);
+  join_cells_into_pores(network, facets, spheres, centres.flat, spacing);
   group_facets_into_throats(network, facets);
   return network;
+}
+
+}  // namespace
+
+PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin) {
+  const double spacing = std::cbrt(spheres.edges.prod() / std::max(1, spheres.size()));
+  PoreSpace space;
+  const auto& periodic = spheres.periodic;
+  if (std::find(periodic.begin(), periodic.end(), true) == periodic.end() || spheres.size() == 0) {
+    space.network = network_of(spheres, spacing);
+    space.spheres = spheres;
+  } else {
+    double margin = 2.5 * spacing + 2.0 * spheres.radii.maxCoeff();
+    for (;; margin *= 1.5) {
+      Images images = replicate(spheres, margin);
+      const PoreNetwork all = network_of(images.spheres, spacing);
+      if (fold(all, images, spheres, spacing, space.network)) {
+        space.spheres = std::move(images.spheres);
+        break;
+      }
+    }
+  }
+  space.network.origin = origin;
+  return space;
 }
 
 int locate(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place,
@@ -179,6 +202,7 @@ int locate(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vect
     const auto [distance, facet] = outside_by(network, spheres, place, cell);
     if (distance <= 0.0) return cell;
     cell = network.cell_neighbours[cell][facet];
+    if (cell < 0) break;  // into an image
   }
   // round-off can make a walk run in a circle between flat cells: take the least bad cell
   int best = 0;

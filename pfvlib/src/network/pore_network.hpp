@@ -6,11 +6,19 @@
 
 namespace pfv {
 
+/// The network and the spheres that its vertices stand for: the packing's own or, with periodic axes,
+/// those and their images.
+struct PoreSpace {
+  PoreNetwork network;
+  Spheres spheres;
+};
+
 /// Packing and box -> pores and throats (Chareyre et al. 2012, sec. 2). Cells that share one dual
 /// vertex (distance below 1e-6 of the mean sphere spacing) become one pore, and flat cells join a
 /// neighbour, so that a lattice and the same lattice displaced by rounding give the same network.
-/// Throws InputError when two spheres have one centre.
-PoreNetwork build_network(const Spheres& spheres, const Eigen::Vector3d& origin);
+/// Throws InputError when two spheres have one centre. With periodic axes the cost is that of the
+/// packing with a margin of some three spheres around it.
+PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin);
 
 /// The cell that contains a place (in the coordinates of `spheres`): walks from cell `start` through
 /// the facets that separate; falls back to a search. Cost: about N^(1/3) steps.

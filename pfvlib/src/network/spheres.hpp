@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <string>
 
 namespace pfv {
@@ -18,6 +19,7 @@ struct Spheres {
   Eigen::Matrix3Xd centres;
   Eigen::VectorXd radii;
   Eigen::Vector3d edges;
+  std::array<bool, 3> periodic{false, false, false};
 
   int size() const { return static_cast<int>(radii.size()); }
   /// Distance from sphere k to wall `face`, m.

@@ -33,9 +33,13 @@ using Site = std::pair<Kernel::Weighted_point_3, Vertex>;
 constexpr double wall_radius_in_box_lengths = 33554432.0;
 
 Site wall_site(const Spheres& spheres, int face) {
+  double extent = spheres.edges.maxCoeff();
+  if (spheres.size() > 0)  // images of a periodic box stand outside it
+    extent = std::max(extent, (spheres.centres.rowwise().maxCoeff() -
+                               spheres.centres.rowwise().minCoeff())
+                                  .maxCoeff());
   // a power of two, so that R and R² are exact
-  const double radius =
-      std::exp2(std::ceil(std::log2(wall_radius_in_box_lengths * spheres.edges.maxCoeff())));
+  const double radius = std::exp2(std::ceil(std::log2(wall_radius_in_box_lengths * extent)));
   Eigen::Vector3d centre = 0.5 * spheres.edges;
   const int axis = face / 2;
   centre[axis] = face % 2 ? spheres.edges[axis] + radius : -radius;
@@ -54,7 +58,8 @@ Site sphere_site(const Spheres& spheres, int k) {
 Regular build(const Spheres& spheres) {
   std::vector<Site> sites;
   sites.reserve(spheres.size() + 6);
-  for (int face = 0; face < 6; ++face) sites.push_back(wall_site(spheres, face));
+  for (int face = 0; face < 6; ++face)
+    if (!spheres.periodic[face / 2]) sites.push_back(wall_site(spheres, face));
   for (int k = 0; k < spheres.size(); ++k) sites.push_back(sphere_site(spheres, k));
   Regular regular;
   regular.insert(sites.begin(), sites.end());
@@ -128,7 +133,9 @@ void refuse_equal_centres(const Spheres& spheres) {
 Triangulation triangulate(const Spheres& spheres) {
   const Regular regular = build(spheres);
   Triangulation result;
-  if (regular.number_of_vertices() < static_cast<std::size_t>(spheres.size()) + 6) {
+  const auto periodic = std::count(spheres.periodic.begin(), spheres.periodic.end(), true);
+  const auto walls = static_cast<std::size_t>(6 - 2 * periodic);
+  if (regular.number_of_vertices() < static_cast<std::size_t>(spheres.size()) + walls) {
     refuse_equal_centres(spheres);
     result.hidden = hidden_spheres(regular, spheres.size());
   }

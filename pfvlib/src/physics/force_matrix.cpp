@@ -37,7 +37,8 @@ void for_each_share(const PoreNetwork& network, const Throats& throats, int sphe
         if (parts.viscous && throats.fluid_area[t] > 0.0)
           area += throats.fluid_area[t] * viscous_share(network, throats, t, f, k);
         if (area != 0.0)
-          visit(is_wall(vertex) ? spheres + wall_number(vertex) : vertex, t, area);
+          visit(is_wall(vertex) ? spheres + wall_number(vertex) : network.vertex_sphere[vertex],
+                t, area);
       }
 }
 
@@ -102,15 +103,25 @@ Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pres
   return forces;
 }
 
-SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& spheres) {
-  std::vector<std::vector<std::pair<int, double>>> rows(spheres.size());
+Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& throats, int spheres,
+                                 ForceParts parts, const Eigen::Vector3d& gradient) {
+  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, spheres + 6);
+  for_each_share(network, throats, spheres, parts, [&](int row, int t, double area) {
+    forces.col(row) -= area * gradient.dot(network.throat_offset(t)) * throats.normal.col(t);
+  });
+  return forces;
+}
+
+SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& vertices,
+                                 int spheres) {
+  std::vector<std::vector<std::pair<int, double>>> rows(spheres);
   for (int c = 0; c < network.cells(); ++c) {
     const auto& cell = network.cell_vertices[c];
     for (int i = 0; i < 4 && !is_wall(cell[i]); ++i) {
-      const double angle = std::abs(solid_angle(spheres.towards(cell[i], cell[(i + 1) % 4]),
-                                                spheres.towards(cell[i], cell[(i + 2) % 4]),
-                                                spheres.towards(cell[i], cell[(i + 3) % 4])));
-      rows[cell[i]].emplace_back(network.cell_pore[c], angle);
+      const double angle = std::abs(solid_angle(vertices.towards(cell[i], cell[(i + 1) % 4]),
+                                                vertices.towards(cell[i], cell[(i + 2) % 4]),
+                                                vertices.towards(cell[i], cell[(i + 3) % 4])));
+      rows[network.vertex_sphere[cell[i]]].emplace_back(network.cell_pore[c], angle);
     }
   }
   SurfacePressure matrix;

@@ -34,13 +34,17 @@ ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats, int
 /// F = S p: 3 x (N + 6), N.
 Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures);
 
+/// What a macroscopic gradient (Pa/m) adds to S p where throats reach into images: 3 x (N + 6), N.
+Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& throats, int spheres,
+                                 ForceParts parts, const Eigen::Vector3d& gradient);
+
 /// Mean pressure over each sphere's surface: pores weighted with the solid angle of their cells, Pa.
 struct SurfacePressure {
   std::vector<int> row_begin{0};
   std::vector<int> pore;
   std::vector<double> weight;
 };
-SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& spheres);
+SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& vertices, int spheres);
 Eigen::VectorXd multiply(const SurfacePressure& matrix, const Eigen::VectorXd& pressures);
 
 }  // namespace pfv

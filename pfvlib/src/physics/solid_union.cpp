@@ -53,7 +53,8 @@ BallSection cut_within_cell(const PoreNetwork& network, const Spheres& spheres, 
 
 }  // namespace
 
-SolidUnion solid_union(const PoreNetwork& network, const Spheres& spheres) {
+SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
+                       const Spheres& spheres) {
   std::vector<BallSection> cut(spheres.size());
   std::vector<char> centre_outside(spheres.size(), 0);  // of its own power cell
   for (int c = 0; c < network.cells(); ++c) {
@@ -61,12 +62,13 @@ SolidUnion solid_union(const PoreNetwork& network, const Spheres& spheres) {
     for (int i = 0; i < 4 && !is_wall(cell[i]); ++i)
       for (int j = 0; j < 4; ++j) {
         if (i == j) continue;
-        const int k = cell[i];
-        const BallSection section = cut_within_cell(network, spheres, c, i, j);
+        const int k = network.vertex_sphere[cell[i]];
+        const BallSection section = cut_within_cell(network, vertices, c, i, j);
         cut[k].volume += section.volume;
         cut[k].area += section.area;
-        const Eigen::Vector3d centre = network.cell_centres.col(c) - spheres.centres.col(k);
-        if (centre.dot(spheres.towards(k, cell[j])) < 0.0) centre_outside[k] = 1;
+        const Eigen::Vector3d centre =
+            network.cell_centres.col(c) - vertices.centres.col(cell[i]);
+        if (centre.dot(vertices.towards(cell[i], cell[j])) < 0.0) centre_outside[k] = 1;
       }
   }
   for (const int k : network.hidden) centre_outside[k] = 1;

@@ -14,6 +14,9 @@ struct SolidUnion {
 /// Exact volume and surface of the union of the spheres inside the box: each sphere's part in its own
 /// power cell, which its walls and the radical planes of its overlaps cut. Those cuts are summed over
 /// the orthoschemes (sphere, edge, facet, cell) of the triangulation.
-SolidUnion solid_union(const PoreNetwork& network, const Spheres& spheres);
+/// `vertices` are what the network's vertices stand for, `spheres` the packing's own (the same without
+/// periodic axes).
+SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
+                       const Spheres& spheres);
 
 }  // namespace pfv

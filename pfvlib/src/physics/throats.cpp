@@ -94,8 +94,10 @@ double disc_part(const std::array<Vertex, 3>& facet, int corner, const Spheres& 
   return area_in_disc(flat.polygon, radius);
 }
 
-Eigen::Vector3d pore_centre(const PoreNetwork& network, int f, int side) {
-  return network.pore_centres.col(network.cell_pore[network.facet_cells[f][side]]);
+/// Centre of a throat's first or second pore; with periodic axes, of the image at the throat.
+Eigen::Vector3d pore_centre(const PoreNetwork& network, int t, int side) {
+  const Eigen::Vector3d centre = network.pore_centres.col(network.throat_pores[t][side]);
+  return side == 0 ? centre : Eigen::Vector3d(centre + network.throat_offset(t));
 }
 
 /// The two pyramids of a facet, on either side.
@@ -107,7 +109,7 @@ struct Halves {
   std::array<double, 3> gamma_of_vertex{0.0, 0.0, 0.0};
 };
 
-void add_sphere(Halves& halves, const PoreNetwork& network, const Spheres& spheres, int f,
+void add_sphere(Halves& halves, const PoreNetwork& network, const Spheres& spheres, int t, int f,
                 int corner) {
   const auto& facet = network.facet_vertices[f];
   const int k = facet[corner];
@@ -115,7 +117,7 @@ void add_sphere(Halves& halves, const PoreNetwork& network, const Spheres& spher
   const Eigen::Vector3d u = spheres.towards(k, facet[(corner + 1) % 3]);
   const Eigen::Vector3d v = spheres.towards(k, facet[(corner + 2) % 3]);
   for (int side = 0; side < 2; ++side) {
-    const Eigen::Vector3d to_centre = pore_centre(network, f, side) - spheres.centres.col(k);
+    const Eigen::Vector3d to_centre = pore_centre(network, t, side) - spheres.centres.col(k);
     const double angle = (side == 0 ? -1.0 : 1.0) * solid_angle(u, v, to_centre);
     halves.phi[side] -= radius * radius * radius * angle / 3.0;
     halves.gamma[side] += radius * radius * angle;
@@ -125,7 +127,7 @@ void add_sphere(Halves& halves, const PoreNetwork& network, const Spheres& spher
 
 /// The strip of wall under one side of the facet, out to P on either side; only where fluid sticks.
 void add_wall(Halves& halves, const PoreNetwork& network, const PoreBoundaries& boundaries,
-              const Spheres& spheres, int f, int corner) {
+              const Spheres& spheres, int t, int f, int corner) {
   const auto& facet = network.facet_vertices[f];
   const int face = wall_number(facet[corner]);
   const double side_length =
@@ -134,7 +136,7 @@ void add_wall(Halves& halves, const PoreNetwork& network, const PoreBoundaries& 
                               .cross(spheres.towards(facet[0], facet[2]))
                               .norm();
   for (int side = 0; side < 2; ++side) {
-    const int pore = network.cell_pore[network.facet_cells[f][side]];
+    const int pore = network.throat_pores[t][side];
     if (!(boundaries.no_slip_faces[pore] >> face & 1)) continue;
     const double area = 0.5 * side_length * halves.height[side];
     halves.gamma[side] += area;
@@ -143,26 +145,27 @@ void add_wall(Halves& halves, const PoreNetwork& network, const PoreBoundaries& 
 }
 
 Halves measure_halves(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                      const Spheres& spheres, int f, double area, const Eigen::Vector3d& normal) {
+                      const Spheres& spheres, int t, int f, double area,
+                      const Eigen::Vector3d& normal) {
   const auto& facet = network.facet_vertices[f];
   const Eigen::Vector3d corner = spheres.centres.col(facet[0]);
   Halves halves;
-  halves.height = {normal.dot(corner - pore_centre(network, f, 0)),
-                   normal.dot(pore_centre(network, f, 1) - corner)};
+  halves.height = {normal.dot(corner - pore_centre(network, t, 0)),
+                   normal.dot(pore_centre(network, t, 1) - corner)};
   for (int side = 0; side < 2; ++side)
     halves.volume[side] = halves.phi[side] = area * halves.height[side] / 3.0;
   for (int k = 0; k < 3; ++k) {
     if (is_wall(facet[k]))
-      add_wall(halves, network, boundaries, spheres, f, k);
+      add_wall(halves, network, boundaries, spheres, t, f, k);
     else
-      add_sphere(halves, network, spheres, f, k);
+      add_sphere(halves, network, spheres, t, f, k);
   }
   return halves;
 }
 
 void resize(Throats& throats, const PoreNetwork& network) {
   throats.facet_disc.assign(network.facets(), {0.0, 0.0, 0.0});
-  throats.facet_gamma.resize(network.facets());
+  throats.facet_gamma.assign(network.facets(), {0.0, 0.0, 0.0});
   throats.normal.resize(3, network.throats());
   for (auto* values : {&throats.area, &throats.fluid_area, &throats.length, &throats.volume,
                        &throats.gamma})
@@ -171,9 +174,9 @@ void resize(Throats& throats, const PoreNetwork& network) {
     values->assign(network.pores(), 0.0);
 }
 
-void add_to_pores(Throats& throats, const PoreNetwork& network, const Halves& halves, int f) {
+void add_to_pores(Throats& throats, const PoreNetwork& network, const Halves& halves, int t) {
   for (int side = 0; side < 2; ++side) {
-    const int pore = network.cell_pore[network.facet_cells[f][side]];
+    const int pore = network.throat_pores[t][side];
     throats.pore_volume[pore] += halves.volume[side];
     throats.pore_fluid_volume[pore] += halves.phi[side];
     throats.pore_gamma[pore] += halves.gamma[side];
@@ -187,8 +190,8 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
     const auto& facet = network.facet_vertices[f];
     const double area = area_vector(facet, spheres).norm();
     const Eigen::Vector3d normal = unit_normal(facet, spheres);
-    const Halves halves = measure_halves(network, boundaries, spheres, f, area, normal);
-    add_to_pores(throats, network, halves, f);
+    const Halves halves = measure_halves(network, boundaries, spheres, t, f, area, normal);
+    add_to_pores(throats, network, halves, t);
     throats.facet_gamma[f] = halves.gamma_of_vertex;
     for (int k = 0; k < 3; ++k)
       if (!is_wall(facet[k]))
@@ -202,8 +205,7 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
     }
   }
   throats.fluid_area[t] = std::max(0.0, throats.area[t] - discs);
-  const auto [i, j] = network.throat_pores[t];
-  throats.length[t] = (network.pore_centres.col(j) - network.pore_centres.col(i)).norm();
+  throats.length[t] = (pore_centre(network, t, 1) - pore_centre(network, t, 0)).norm();
 }
 
 }  // namespace

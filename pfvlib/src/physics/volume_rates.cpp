@@ -25,8 +25,9 @@ Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const PoreNetwork& 
     double rate = 0.0;
     for (int i = 0; i < 4; ++i) {
       const Vertex vertex = network.cell_vertices[c][i];
-      rate += is_wall(vertex) ? matrix.gradient[c][i].dot(wall_velocity[wall_number(vertex)])
-                              : matrix.gradient[c][i].dot(velocities.col(vertex));
+      rate += is_wall(vertex)
+                  ? matrix.gradient[c][i].dot(wall_velocity[wall_number(vertex)])
+                  : matrix.gradient[c][i].dot(velocities.col(network.vertex_sphere[vertex]));
     }
     rates[network.cell_pore[c]] += rate;
   }

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "network/periodic_images.hpp"
+
+#include "network/facets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace pfv {
+
+namespace {
+
+/// A pore in units of the spacing may be displaced by this much by rounding and by the choice of the
+/// cell that names its centre.
+constexpr double same_place = 1e-5;
+
+std::array<int, 3> shift_of(const Eigen::Vector3d& place, const Spheres& spheres) {
+  std::array<int, 3> shift{0, 0, 0};
+  for (int axis = 0; axis < 3; ++axis)
+    if (spheres.periodic[axis])  // what stands on the cell's upper border but for rounding is below
+      shift[axis] = static_cast<int>(std::floor(place[axis] / spheres.edges[axis] + 1e-6));
+  return shift;
+}
+
+Eigen::Vector3d displacement(const std::array<int, 3>& shift, const Spheres& spheres) {
+  return Eigen::Vector3d(shift[0], shift[1], shift[2]).cwiseProduct(spheres.edges);
+}
+
+/// Finds the home pore at a place.
+class PoreFinder {
+ public:
+  PoreFinder(const PoreNetwork& all, const std::vector<int>& home, double spacing)
+      : all_(all), size_(0.1 * spacing), reach_(same_place * spacing) {
+    for (int pore = 0; pore < all.pores(); ++pore)
+      if (home[pore] >= 0) bins_[bin(all.pore_centres.col(pore))].push_back(pore);
+  }
+
+  /// The pore of `all`, or -1.
+  int find(const Eigen::Vector3d& place) const {
+    int best = -1;
+    double least = reach_;
+    const std::array<long, 3> middle = bin(place);
+    for (long dx = -1; dx <= 1; ++dx)
+      for (long dy = -1; dy <= 1; ++dy)
+        for (long dz = -1; dz <= 1; ++dz) {
+          const auto found = bins_.find({middle[0] + dx, middle[1] + dy, middle[2] + dz});
+          if (found == bins_.end()) continue;
+          for (const int pore : found->second) {
+            const double distance = (all_.pore_centres.col(pore) - place).norm();
+            if (distance > least) continue;
+            least = distance;
+            best = pore;
+          }
+        }
+    return best;
+  }
+
+ private:
+  std::array<long, 3> bin(const Eigen::Vector3d& place) const {
+    return {std::lround(place[0] / size_), std::lround(place[1] / size_),
+            std::lround(place[2] / size_)};
+  }
+  const PoreNetwork& all_;
+  double size_, reach_;
+  std::map<std::array<long, 3>, std::vector<int>> bins_;
+};
+
+/// True when no sphere outside the replicated region could reach into the cell's power sphere.
+bool is_settled(const PoreNetwork& all, const Images& images, const Spheres& spheres, int cell) {
+  const Eigen::Vector3d centre = all.cell_centres.col(cell);
+  const int base = all.cell_vertices[cell][0];
+  const double radius = images.spheres.radii[base];
+  const double power =
+      (centre - images.spheres.centres.col(base)).squaredNorm() - radius * radius;
+  const double largest = spheres.radii.maxCoeff();
+  const double reach = std::sqrt(std::max(0.0, power) + largest * largest);
+  for (int axis = 0; axis < 3; ++axis)
+    if (spheres.periodic[axis] &&
+        (centre[axis] - reach < -images.margin ||
+         centre[axis] + reach > spheres.edges[axis] + images.margin))
+      return false;
+  return true;
+}
+
+/// Where a pore of the full network lies: the home pore that it is or is an image of.
+struct Place {
+  int pore = -1;
+  std::array<int, 3> shift{0, 0, 0};
+};
+
+struct FoldedThroat {
+  int throat;  ///< of the full network
+  bool turned;
+  std::array<int, 2> pores;
+  Eigen::Vector3d offset;
+};
+
+void copy_throats(const PoreNetwork& all, const std::vector<FoldedThroat>& throats,
+                  const std::vector<int>& home_cell, PoreNetwork& network) {
+  network.throat_offsets.resize(3, static_cast<Eigen::Index>(throats.size()));
+  network.throat_facets = {0};
+  const auto cell = [&](int c) { return home_cell[c]; };
+  for (const FoldedThroat& throat : throats) {
+    network.throat_offsets.col(network.throats()) = throat.offset;
+    network.throat_pores.push_back(throat.pores);
+    for (int f = all.throat_facets[throat.throat]; f < all.throat_facets[throat.throat + 1]; ++f) {
+      const auto& facet = all.facet_vertices[f];
+      const auto& cells = all.facet_cells[f];
+      network.facet_vertices.push_back(throat.turned ? reversed(facet) : facet);
+      network.facet_cells.push_back({cell(cells[throat.turned ? 1 : 0]),
+                                     cell(cells[throat.turned ? 0 : 1])});
+    }
+    network.throat_facets.push_back(network.facets());
+  }
+}
+
+void copy_pores_and_cells(const PoreNetwork& all, const std::vector<int>& home,
+                          std::vector<int>& home_cell, PoreNetwork& network) {
+  std::vector<int> pores, cells;
+  for (int pore = 0; pore < all.pores(); ++pore)
+    if (home[pore] >= 0) pores.push_back(pore);
+  for (int c = 0; c < all.cells(); ++c)
+    if (home[all.cell_pore[c]] >= 0) {
+      home_cell[c] = static_cast<int>(cells.size());
+      cells.push_back(c);
+    }
+  network.pore_centres.resize(3, static_cast<Eigen::Index>(pores.size()));
+  for (std::size_t p = 0; p < pores.size(); ++p) {
+    network.pore_centres.col(static_cast<Eigen::Index>(p)) = all.pore_centres.col(pores[p]);
+    network.pore_faces.push_back(all.pore_faces[pores[p]]);
+  }
+  network.cell_centres.resize(3, static_cast<Eigen::Index>(cells.size()));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const int c = cells[i];
+    network.cell_centres.col(static_cast<Eigen::Index>(i)) = all.cell_centres.col(c);
+    network.cell_vertices.push_back(all.cell_vertices[c]);
+    network.cell_pore.push_back(home[all.cell_pore[c]]);
+    auto neighbours = all.cell_neighbours[c];
+    for (int& neighbour : neighbours) neighbour = neighbour < 0 ? -1 : home_cell[neighbour];
+    network.cell_neighbours.push_back(neighbours);
+  }
+}
+
+void find_hidden(const Images& images, int spheres, PoreNetwork& network) {
+  network.vertex_sphere = images.original;
+  std::vector<char> seen(spheres, 0);
+  for (const auto& cell : network.cell_vertices)
+    for (const Vertex vertex : cell)
+      if (!is_wall(vertex)) seen[images.original[vertex]] = 1;
+  for (int k = 0; k < spheres; ++k)
+    if (!seen[k]) network.hidden.push_back(k);
+}
+
+}  // namespace
+
+Images replicate(const Spheres& spheres, double margin) {
+  Images images;
+  images.margin = margin;
+  std::array<int, 3> reach{0, 0, 0};
+  for (int axis = 0; axis < 3; ++axis)
+    if (spheres.periodic[axis])
+      reach[axis] = static_cast<int>(std::ceil(margin / spheres.edges[axis]));
+  std::vector<Eigen::Vector3d> centres;
+  for (int x = -reach[0]; x <= reach[0]; ++x)
+    for (int y = -reach[1]; y <= reach[1]; ++y)
+      for (int z = -reach[2]; z <= reach[2]; ++z)
+        for (int k = 0; k < spheres.size(); ++k) {
+          const Eigen::Vector3d centre =
+              spheres.centres.col(k) + displacement({x, y, z}, spheres);
+          const bool near =
+              (centre.array() >= -margin).all() &&
+              (centre.array() <= spheres.edges.array() + margin).all();
+          if (!near) continue;
+          centres.push_back(centre);
+          images.original.push_back(k);
+        }
+  const auto n = static_cast<Eigen::Index>(centres.size());
+  images.spheres.edges = spheres.edges;
+  images.spheres.periodic = spheres.periodic;
+  images.spheres.ids.resize(n);
+  images.spheres.centres.resize(3, n);
+  images.spheres.radii.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    images.spheres.ids[i] = spheres.ids[images.original[i]];
+    images.spheres.centres.col(i) = centres[i];
+    images.spheres.radii[i] = spheres.radii[images.original[i]];
+  }
+  return images;
+}
+
+bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
+          PoreNetwork& network) {
+  network = {};
+  std::vector<int> home(all.pores(), -1);
+  int pores = 0;
+  for (int pore = 0; pore < all.pores(); ++pore)
+    if (shift_of(all.pore_centres.col(pore), spheres) == std::array<int, 3>{0, 0, 0})
+      home[pore] = pores++;
+
+  const PoreFinder finder(all, home, spacing);
+  std::vector<Place> places(all.pores());
+  std::vector<char> needed(all.pores(), 0);
+  for (const auto& both : all.throat_pores) {
+    if (home[both[0]] < 0 && home[both[1]] < 0) continue;
+    for (const int pore : both) {
+      if (needed[pore]) continue;
+      needed[pore] = 1;
+      const Eigen::Vector3d centre = all.pore_centres.col(pore);
+      places[pore].shift = shift_of(centre, spheres);
+      const int found = finder.find(centre - displacement(places[pore].shift, spheres));
+      if (found < 0) return false;
+      places[pore].pore = home[found];
+    }
+  }
+  for (int c = 0; c < all.cells(); ++c)
+    if (needed[all.cell_pore[c]] && !is_settled(all, images, spheres, c)) return false;
+
+  std::vector<FoldedThroat> throats;
+  constexpr std::array<int, 3> here{0, 0, 0};
+  for (int t = 0; t < all.throats(); ++t) {
+    const auto [i, j] = all.throat_pores[t];
+    if (!needed[i] || !needed[j]) continue;
+    for (const bool turned : {false, true}) {
+      const Place& first = places[turned ? j : i];
+      const Place& second = places[turned ? i : j];
+      // of all its images, the one that starts at home in the smaller pore, or forwards in one pore
+      if (first.shift != here || first.pore > second.pore ||
+          (first.pore == second.pore && second.shift <= here))
+        continue;
+      throats.push_back({t, turned, {first.pore, second.pore},
+                         displacement(second.shift, spheres)});
+      break;
+    }
+  }
+  std::vector<int> home_cell(all.cells(), -1);
+  copy_pores_and_cells(all, home, home_cell, network);
+  copy_throats(all, throats, home_cell, network);
+  find_hidden(images, spheres.size(), network);
+  return true;
+}
+
+}  // namespace pfv
