@@ -29,7 +29,7 @@ inline Stages stages_of(const pfv::PackingArrays& packing, const pfv::Box& box) 
   Stages s;
   s.box = box;
   s.spheres = pfv::select_grains(packing.view(), box, pfv::OutsideGrains::refuse).spheres;
-  s.network = pfv::build_network(s.spheres, box.lower);
+  s.network = pfv::build_network(s.spheres, box.lower).network;
   s.boundaries = pfv::find_pore_boundaries(s.network, box);
   s.throats = pfv::measure_throats(s.network, s.boundaries, s.spheres);
   return s;
