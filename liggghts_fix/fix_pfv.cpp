@@ -95,7 +95,8 @@ void FixPfv::check_environment() {
   if (std::strcmp(update->unit_style, "si") != 0)
     error->fix_error(FLERR, this, "needs `units si`");
   if (!atom->radius_flag || !atom->rmass_flag || !atom->tag_enable)
-    error->fix_error(FLERR, this, "needs atoms with radius, mass and tag; use `atom_style granular`");
+    error->fix_error(FLERR, this,
+                     "needs atoms with radius, mass and tag; use `atom_style granular`");
   if (atom->superquadric_flag)
     error->fix_error(FLERR, this, "needs spheres; superquadric atoms have no pore network");
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
@@ -317,8 +318,8 @@ int FixPfv::modify_param(int narg, char** arg) {
   return taken;
 }
 
-/// The run that goes on builds its network anew from the grains of the restart file, just as the run
-/// that starts from the file will: both go on from the same network, strain and pressures.
+/// The run that goes on builds its network anew from the grains of the restart file, just as the
+/// run that starts from the file will: both go on from the same network, strain and pressures.
 void FixPfv::write_restart(FILE* file) {
   read_host();
   PfvRestartRecord record;

@@ -25,8 +25,8 @@ FixStyle(pfv,FixPfv)
 
 namespace LAMMPS_NS {
 
-/// Gathers the grains on rank 0, calls the flow library once, scatters the forces. The physics is in
-/// pfv::Flow, which lives on rank 0 alone; everything else here is the same on all ranks.
+/// Gathers the grains on rank 0, calls the flow library once, scatters the forces. The physics is
+/// in pfv::Flow, which lives on rank 0 alone; everything else here is the same on all ranks.
 class FixPfv : public Fix {
  public:
   FixPfv(class LAMMPS*, int, char**);

@@ -82,8 +82,9 @@ void FixPfv::print_phases() {
         "Please cite, for the flow and for its coupling with the grains:\n"
         "  Chareyre, Cortis, Catalano, Barthelemy (2012) Pore-scale modeling of viscous flow and\n"
         "  induced forces in dense sphere packings. Transport in Porous Media 92:473-493\n"
-        "  Catalano, Chareyre, Barthelemy (2014) Pore-scale modeling of fluid-particles interaction\n"
-        "  and emerging poromechanical effects. Int. J. Numer. Anal. Methods Geomech. 38:51-71\n";
+        "  Catalano, Chareyre, Barthelemy (2014) Pore-scale modeling of fluid-particles\n"
+        "  interaction and emerging poromechanical effects. Int. J. Numer. Anal. Methods\n"
+        "  Geomech. 38:51-71\n";
   cited_ = true;
   print(text);
 }

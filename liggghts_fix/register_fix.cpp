@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adds the style `pfv` to a stock libliggghts, without rebuilding it. Every `fix` command of every
-// Modify object (a `clear` makes a new one) passes through Modify::add_fix; this library's definition
-// stands before the one of libliggghts in the lookup order, enters the style, and calls the original.
+// Modify object (a `clear` makes a new one) passes through Modify::add_fix; this library's
+// definition stands before the one of libliggghts in the lookup order, enters the style, and calls
+// the original.
 #include "fix_pfv.h"
 
 #include "modify.h"
@@ -39,7 +40,7 @@ AddFix original_add_fix() {
   // Modify::add_fix(int, char**, char*)
   void* symbol = dlsym(RTLD_NEXT, "_ZN9LAMMPS_NS6Modify7add_fixEiPPcS1_");
   if (!symbol) {
-    std::fputs("fix pfv: libliggghts has no Modify::add_fix(int, char**, char*); LIGGGHTS 3.8 has\n",
+    std::fputs("fix pfv: libliggghts has no Modify::add_fix(int, char**, char*) as 3.8 has\n",
                stderr);
     std::abort();
   }

@@ -64,8 +64,8 @@ std::vector<double> pack(const PfvRestartRecord& record) {
 PfvRestartRecord unpack(const char* bytes) {
   Reader reader(bytes);
   if (reader.next() != format_number)
-    throw pfv::InputError("the restart file holds this fix in the form of another version; give the "
-                          "fix another ID to start the flow anew");
+    throw pfv::InputError("the restart file holds this fix in the form of another version; give "
+                          "the fix another ID to start the flow anew");
   PfvRestartRecord record;
   record.step = static_cast<std::int64_t>(reader.next());
   record.flow.time = reader.next();

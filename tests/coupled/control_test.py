@@ -119,8 +119,9 @@ class Control(CoupledTest):
 
     def test_gravity_may_change_between_runs(self):
         sealed = FLOW.replace("pressure 10", "sealed").replace("pressure 0", "sealed")
-        self.liggghts(HEAD + "unfix integr\nvelocity all set 0 0 0\nfix g all gravity 9.81 vector 0 "
-                      f"0 -1\nfix flow all pfv {sealed}\nrun 0\nunfix g\nfix g all gravity 4.0 "
+        self.liggghts(HEAD + "unfix integr\nvelocity all set 0 0 0\n"
+                      "fix g all gravity 9.81 vector 0 0 -1\n"
+                      f"fix flow all pfv {sealed}\nrun 0\nunfix g\nfix g all gravity 4.0 "
                       "vector 1 0 0\n" + dump("d.dump") + "run 0\n")
         for row in read_dump(self.folder / "d.dump")[0].values():
             lift = 1000 * 4 / 3 * math.pi * row[3]**3 * 4.0
@@ -145,9 +146,9 @@ class Control(CoupledTest):
         self.liggghts(head + one + other + dump("both.dump") + "run 0\n")
         self.assertEqual((self.folder / "alone.dump").read_bytes(),
                          (self.folder / "both.dump").read_bytes())
-        self.liggghts(head + one.replace("fix one", "fix flow") + dump("alone.dump") + "run 0\n")
-        self.liggghts(head + one.replace("fix one", "fix flow") + other.replace("fix flow", "fix two")
-                      + dump("both.dump") + "run 0\n")
+        one, other = one.replace("fix one", "fix flow"), other.replace("fix flow", "fix two")
+        self.liggghts(head + one + dump("alone.dump") + "run 0\n")
+        self.liggghts(head + one + other + dump("both.dump") + "run 0\n")
         self.assertEqual((self.folder / "alone.dump").read_bytes(),
                          (self.folder / "both.dump").read_bytes())
 

@@ -11,12 +11,15 @@ HEAD = "include in.packing\n"
 FROZEN = HEAD + "unfix integr\n"
 THERMO = ("thermo_style custom step f_flow f_flow[1] f_flow[2] f_flow[3] f_flow[4] f_flow[5]\n"
           "thermo_modify norm no format float %.15g\nthermo 1\n")
-LID = f"fix lid all mesh/surface/stress file lid.stl type 1\nfix lidw all {MODEL} mesh n_meshes 1 meshes lid\n"
+LID = ("fix lid all mesh/surface/stress file lid.stl type 1\n"
+       f"fix lidw all {MODEL} mesh n_meshes 1 meshes lid\n")
 SPEED = 0.001  # of the piston, m/s
+DOWN = f"fix down all move/mesh mesh lid linear 0 0 {-SPEED}\n"
 
 
 def piston(words):
-    return "fix flow all pfv viscosity 0.01 " + faces(zlo="no_slip sealed", zhi=f"mesh lid {words}") + "\n"
+    return ("fix flow all pfv viscosity 0.01 " +
+            faces(zlo="no_slip sealed", zhi=f"mesh lid {words}") + "\n")
 
 
 class Faces(CoupledTest):
@@ -54,7 +57,7 @@ class Faces(CoupledTest):
     def test_drained_piston_expels_its_volume_rate(self):
         """Through the face of a piston at zero pressure flows what the piston displaces; grains at
         rest add nothing (method: out = sum over its pores of inflow - dV/dt)."""
-        self.liggghts(FROZEN + LID + f"fix down all move/mesh mesh lid linear 0 0 {-SPEED}\n" +
+        self.liggghts(FROZEN + LID + DOWN +
                       piston("pressure 0") + THERMO + "run 3\n")
         for row in self.log()[1:]:
             self.assertAlmostEqual(row["flow[2]"] / (SPEED * EDGE**2), 1.0, delta=1e-9)
@@ -62,7 +65,7 @@ class Faces(CoupledTest):
             self.assertLess(row["flow[4]"], 1e-9)
 
     def test_flow_every_n_steps_takes_the_displacement_of_the_mesh(self):
-        self.liggghts(FROZEN + LID + f"fix down all move/mesh mesh lid linear 0 0 {-SPEED}\n" +
+        self.liggghts(FROZEN + LID + DOWN +
                       piston("pressure 0").rstrip("\n") + " couple_every 4\n" + THERMO + "run 8\n")
         rows = self.log()
         for step in (4, 8):
@@ -73,7 +76,7 @@ class Faces(CoupledTest):
         """What the lid's stress module reports is the force of the fluid on that face."""
         flow = ("fix flow all pfv viscosity 0.01 " +
                 faces(zlo="pressure 0", zhi="mesh lid no_slip sealed") + "\n")
-        self.liggghts(FROZEN + LID + f"fix down all move/mesh mesh lid linear 0 0 {-SPEED}\n" + flow +
+        self.liggghts(FROZEN + LID + DOWN + flow +
                       "thermo_style custom step f_lid[1] f_lid[2] f_lid[3]\n"
                       "thermo_modify norm no format float %.15g\nthermo 1\n" + dump("d.dump") +
                       "run 1\n")
@@ -93,7 +96,8 @@ class Faces(CoupledTest):
         target, mass, vel_max = 0.01, 1.0e-6, 1.0
         ki = target / (vel_max * mass)
         servo = (f"fix lid all mesh/surface/stress/servo file lid.stl type 1 com 0.05 0.05 {EDGE} "
-                 f"ctrlPV force axis 0. 0. -1. target_val {target} vel_max {vel_max} kp 0.0 ki {ki}\n"
+                 f"ctrlPV force axis 0. 0. -1. target_val {target} vel_max {vel_max} "
+                 f"kp 0.0 ki {ki}\n"
                  f"fix lidw all {MODEL} mesh n_meshes 1 meshes lid\n")
         flow = ("fix flow all pfv viscosity 1.0 " +
                 faces(zlo="pressure 0", zhi="mesh lid symmetry sealed") + "\n")
@@ -122,8 +126,8 @@ class Faces(CoupledTest):
         """A bed that rises takes its faces along whenever the network is built anew."""
         write_data(self.folder, packing(), {grain[0]: [0.0, 0.0, 0.5] for grain in packing()})
         flow = faces(zlo="extent pressure 10", zhi="extent pressure 0") + " retriangulate 1e-6"
-        self.liggghts(FROZEN.replace("unfix integr", "unfix integr\nfix integr all move linear 0 0 0.5")
-                      + f"fix flow all pfv viscosity 0.01 {flow}\n" + dump("d.dump") + "run 20\n")
+        self.liggghts(FROZEN + "fix integr all move linear 0 0 0.5\n"
+                      f"fix flow all pfv viscosity 0.01 {flow}\n" + dump("d.dump") + "run 20\n")
         rows = read_dump(self.folder / "d.dump")[20]
         low = min(row[2] - row[3] for row in rows.values())
         high = max(row[2] + row[3] for row in rows.values())
@@ -166,7 +170,8 @@ class Faces(CoupledTest):
 
     def test_mesh_that_tilts_in_the_run_stops_it(self):
         self.refused(FROZEN + LID +
-                     "fix turn all move/mesh mesh lid rotate origin 0. 0. 0. axis 0. 1. 0. period 1e-3\n" +
+                     "fix turn all move/mesh mesh lid rotate origin 0. 0. 0. axis 0. 1. 0. "
+                     "period 1e-3\n" +
                      piston("pressure 0") + "run 10\n", "zhi", "'lid'", "z axis")
 
 

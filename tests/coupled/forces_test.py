@@ -8,6 +8,7 @@ from coupled import random_velocities, read_dump, read_thermo, write_data
 
 # dumps carry 17 digits, so both programs see the same numbers; LIGGGHTS parses and prints them once
 SAME = 1e-10
+PRESSURES = ("--face", "zlo:pressure=10", "--face", "zhi:pressure=0")
 
 
 class Forces(CoupledTest):
@@ -21,16 +22,15 @@ class Forces(CoupledTest):
     def test_still_grains_get_the_forces_of_pfv_solve(self):
         self.liggghts(f"include in.packing\nfix flow all pfv {FLOW}\n{dump('d.dump')}run 0\n")
         rows = read_dump(self.folder / "d.dump")[0]
-        expected = self.pfv_forces("d.dump", "--face", "zlo:pressure=10", "--face", "zhi:pressure=0")
+        expected = self.pfv_forces("d.dump", *PRESSURES)
         self.assertLess(largest_difference(forces(rows), expected), SAME)
 
     def test_moving_grains_get_the_forces_of_pfv_solve(self):
         self.move_grains()
         self.liggghts(f"include in.packing\nfix flow all pfv {FLOW}\n{dump('d.dump')}run 0\n")
         rows = read_dump(self.folder / "d.dump")[0]
-        expected = self.pfv_forces("d.dump", "--face", "zlo:pressure=10", "--face", "zhi:pressure=0")
-        still = self.pfv_forces(self.without_velocities(rows), "--face", "zlo:pressure=10",
-                                "--face", "zhi:pressure=0")
+        expected = self.pfv_forces("d.dump", *PRESSURES)
+        still = self.pfv_forces(self.without_velocities(rows), *PRESSURES)
         self.assertGreater(largest_difference(still, expected), 1e-3)  # the velocities matter
         self.assertLess(largest_difference(forces(rows), expected), SAME)
 
@@ -79,8 +79,7 @@ class Forces(CoupledTest):
             lines.append(",".join([str(n)] + [repr(v) for v in steps[0][n][:4] + mean]))
         (self.folder / "mean.csv").write_text("\n".join(lines) + "\n")
         # the network is still that of step 0: the strain of 10 steps is far below 1 %
-        expected = self.pfv_forces("mean.csv", "--face", "zlo:pressure=10", "--face",
-                                   "zhi:pressure=0")
+        expected = self.pfv_forces("mean.csv", *PRESSURES)
         self.assertLess(largest_difference(forces(steps[10]), expected), SAME)
 
     def test_pressures_follow_their_variables(self):
@@ -101,12 +100,11 @@ class Forces(CoupledTest):
         self.assertEqual({tuple(row[7:]) for row in dry}, {(0.0, 0.0, 0.0, 0.0)})
         wet = {n: row for n, row in rows.items() if row[2] <= 0.05}
         self.without_velocities(wet)
-        expected = self.pfv_forces("still.csv", "--face", "zlo:pressure=10", "--face",
-                                   "zhi:pressure=0")
+        expected = self.pfv_forces("still.csv", *PRESSURES)
         self.assertLess(largest_difference(forces(wet), expected), SAME)
 
     def test_buoyancy_once_where_there_is_gravity(self):
-        """Still fluid, sealed box: each grain gets rho V g upwards, and nothing with buoyancy no."""
+        """Still fluid, sealed box: each grain gets rho V g upwards; nothing with buoyancy no."""
         sealed = "viscosity 0.01 density 1000 " + FLOW.split(" ", 2)[2].replace(
             "pressure 10", "sealed").replace("pressure 0", "sealed")
         for words, factor in ((sealed, 1.0), (sealed + " buoyancy no", 0.0)):

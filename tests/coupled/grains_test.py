@@ -41,7 +41,8 @@ class Grains(CoupledTest):
         write_plate(self.folder / "outlet.stl", square(EDGE, 0.095))
         # at a constant velocity: that of the step's middle, which the fix takes, is the dumped one
         self.liggghts(HEAD + "unfix integr\nregion top block -1 1 -1 1 0.08 1 units box\n"
-                      "group top region top\nfix integr top move linear 0 0 1\nfix out all mesh/surface file outlet.stl type 1\n"
+                      "group top region top\nfix integr top move linear 0 0 1\n"
+                      "fix out all mesh/surface file outlet.stl type 1\n"
                       "fix mf all massflow/mesh mesh out vec_side 0. 0. 1. count once "
                       "delete_atoms yes\n" + FIX + THERMO + dump("d.dump") + "run 700\n")
         steps = read_dump(self.folder / "d.dump")
@@ -53,8 +54,8 @@ class Grains(CoupledTest):
     def test_inserted_in_a_run(self):
         grains = [g for g in packing() if g[3] < 0.06]
         write_data(self.folder, grains)
-        self.liggghts(HEAD + "fix t all particletemplate/sphere 15485863 atom_type 1 density constant "
-                      "2600 radius constant 0.004\n"
+        self.liggghts(HEAD + "fix t all particletemplate/sphere 15485863 atom_type 1 "
+                      "density constant 2600 radius constant 0.004\n"
                       "fix d all particledistribution/discrete 32452843 1 t 1.0\n"
                       "region top block 0 0.1 0 0.1 0.07 0.1 units box\n" + FIX +
                       "fix ins all insert/pack seed 32452867 distributiontemplate d insert_every 3 "

@@ -73,7 +73,8 @@ class Output(CoupledTest):
 
     def test_files_with_a_flow_step_every_few_steps(self):
         """Written after the first flow step that reaches each multiple."""
-        self.liggghts(HEAD + f"fix flow all pfv {FLOW} couple_every 4 profile z 2 5 p.csv\nrun 16\n")
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} couple_every 4 profile z 2 5 p.csv\n"
+                      "run 16\n")
         _, rows = self.profile()
         self.assertEqual([round(row[0] / 1e-5) for row in rows], [0, 8, 12, 16])
 

@@ -15,4 +15,5 @@ def write_plate(path, corners):
 
 def square(edge, height=0.0, tilt=0.0):
     """The corners of a square normal to z; `tilt` lifts the side at large x."""
-    return [(0, 0, height), (edge, 0, height + tilt), (edge, edge, height + tilt), (0, edge, height)]
+    lifted = height + tilt
+    return [(0, 0, height), (edge, 0, lifted), (edge, edge, lifted), (0, edge, height)]

@@ -163,8 +163,8 @@ class Refusals(CoupledTest):
 
     def test_extent_without_grains(self):
         flow = "viscosity 0.01 " + faces(zlo="extent pressure 1", zhi="extent pressure 0")
-        self.refused(f"include in.packing\ngroup nobody id 999\nfix flow nobody pfv {flow}\nrun 0\n",
-                     "zlo", "extent")
+        self.refused("include in.packing\ngroup nobody id 999\n"
+                     f"fix flow nobody pfv {flow}\nrun 0\n", "zlo", "extent")
 
 
 if __name__ == "__main__":
