@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pfv/error.hpp"
 #include "pfv/version.hpp"
+#include "selftest_command.hpp"
 #include "solve_arguments.hpp"
 #include "solve_command.hpp"
 
@@ -37,14 +38,19 @@ int run(int argc, char** argv) {
       "  pfv solve --packing grains.csv --box 0 1 0 1 0 1 --face zlo:pressure=0\n"
       "            --face zhi:pressure=1 --wall symmetry --report report.json\n"
       "Exit status: 0; 2 bad input; 1 any other failure (solver, disk).");
+  CLI::App* selftest =
+      app.add_subcommand("selftest", "known problems on this machine: a table of pass and fail");
+  selftest->set_version_flag("--version", version_line);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // help or version
     return app.exit(request, std::cout, std::cerr);
   } catch (const CLI::ParseError& error) {
-    const std::string command = app.get_subcommands().empty() ? "pfv" : "pfv solve";
+    const auto chosen = app.get_subcommands();
+    const std::string command = chosen.empty() ? "pfv" : "pfv " + chosen.front()->get_name();
     return complain(bad_input, error.what() + (": see " + command + " --help"));
   }
+  if (selftest->parsed()) return pfv::app::selftest(std::cout) ? succeeded : failed;
   pfv::app::solve(pfv::app::request_of(arguments), std::cout, std::cerr);
   return succeeded;
 }

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Periodic axes of `pfv solve`: lattices against Zick & Homsy (1982), translation, balances, refusals."""
+import math
+import unittest
+
+from command import UNIT_BOX, CommandTest
+
+ALL = ["--periodic", "x,y,z", "--gradient", "0", "0", "-1", "--viscosity", "1"]
+LATTICES = {  # centres, touching radius, drag (Zick & Homsy 1982), our K / K_exact (hydraulic radius)
+    "sc": ([(.5, .5, .5)], .5, 42.1, .979),
+    "bcc": ([(.25, .25, .25), (.75, .75, .75)], 3 ** .5 / 4, 162.9, 1.023),
+    "fcc": ([(.25, .25, .25), (.75, .75, .25), (.75, .25, .75), (.25, .75, .75)],
+            2 ** .5 / 4, 435., .921)}
+
+
+class Periodic(CommandTest):
+    def packing(self, centres, radius):
+        rows = "".join(f"{i},{x!r},{y!r},{z!r},{radius!r}\n"
+                       for i, (x, y, z) in enumerate(centres, 1))
+        return self.write("cell.csv", "id,x,y,z,radius\n" + rows)
+
+    def repeated(self, centres, n):
+        return [((x + i) / n, (y + j) / n, (z + k) / n) for x, y, z in centres
+                for i in range(n) for j in range(n) for k in range(n)]
+
+    def test_lattices_are_isotropic_and_have_the_known_drag(self):
+        for name, (centres, radius, drag, ratio) in LATTICES.items():
+            for n in (1, 2):
+                with self.subTest(lattice=name, cells=n):
+                    report = self.report(*ALL, packing=self.packing(self.repeated(centres, n),
+                                                                    radius / n))
+                    exact = 1 / (6 * math.pi * radius * drag * len(centres)) / n ** 2
+                    self.assertAlmostEqual(report["permeability"] / exact, ratio, delta=6e-4)
+                    tensor = report["permeability_tensor"]
+                    for i in range(3):
+                        for j in range(3):
+                            wanted = report["permeability"] if i == j else 0
+                            self.assertAlmostEqual(tensor[i][j] / report["permeability"],
+                                                   wanted / report["permeability"], delta=1e-12)
+                    self.assertAlmostEqual(report["force_sum"][2], 1, delta=1e-12)
+                    self.assertLess(report["force_balance_error"], 1e-14)
+
+    def test_a_lattice_displaced_by_rounding_keeps_its_permeability(self):
+        # alternating displacements of 1e-9 of the cell
+        centres, radius = LATTICES["fcc"][:2]
+        exact = self.report(*ALL, packing=self.packing(self.repeated(centres, 2), radius / 2))
+        moved = [(x + 1e-9 * math.sin(12.9 * i), y + 1e-9 * math.sin(78.2 * i),
+                  z + 1e-9 * math.sin(37.7 * i))
+                 for i, (x, y, z) in enumerate(self.repeated(centres, 2))]
+        jittered = self.report(*ALL, packing=self.packing(moved, radius / 2))
+        self.assertAlmostEqual(jittered["permeability"] / exact["permeability"], 1, delta=1e-6)
+
+    def test_translation_changes_nothing(self):
+        # 20 spheres in no order: a quasi-random sequence
+        centres = [((.5 + .8191725 * i) % 1, (.5 + .6710436 * i) % 1, (.5 + .5497005 * i) % 1)
+                   for i in range(20)]
+        reports = []
+        for shift in ((0, 0, 0), (.37, -1.21, 3.08)):
+            moved = [tuple(c + s for c, s in zip(centre, shift)) for centre in centres]
+            reports.append(self.report(*ALL, packing=self.packing(moved, .15)))
+        first, second = (report["permeability_tensor"] for report in reports)
+        for i in range(3):
+            for j in range(3):
+                self.assertAlmostEqual(first[i][j] / first[0][0], second[i][j] / first[0][0],
+                                       delta=1e-11)
+                self.assertAlmostEqual(first[i][j] / first[0][0], first[j][i] / first[0][0],
+                                       delta=1e-11)
+
+    def test_walls_on_the_other_axes(self):
+        grains = self.packing(self.repeated(LATTICES["sc"][0], 3), .5 / 3)
+        through = self.report("--periodic", "x,y", "--face", "zlo:pressure=1",
+                              "--face", "zhi:pressure=0", "--viscosity", "1", packing=grains)
+        mirrored = self.report("--wall", "symmetry", "--face", "zlo:pressure=1",
+                               "--face", "zhi:pressure=0", "--viscosity", "1", packing=grains)
+        # the simple cubic array has mirror planes where the walls stand
+        self.assertAlmostEqual(through["permeability"] / mirrored["permeability"], 1, delta=1e-12)
+        along = self.report("--periodic", "z", "--gradient", "0", "0", "-1", "--viscosity", "1",
+                            packing=grains)
+        self.assertLess(along["force_balance_error"], 1e-14)
+        self.assertIsNone(through["permeability_tensor"])
+
+    def test_refusals(self):
+        grains = self.packing([(.5, .5, .5)], .5)
+        for arguments, word in ((["--periodic", "x,q"], "'q'"), (["--periodic", "x,x"], "twice"),
+                                (["--gradient", "0", "0", "1"], "not periodic"),
+                                (["--periodic", "z", "--face", "zlo:pressure=1"], "zlo")):
+            result = self.run_pfv("solve", "--packing", grains, *UNIT_BOX, *arguments)
+            self.assertEqual(result.returncode, 2)
+            self.assertEqual(len(result.stderr.splitlines()), 1)
+            self.assertIn(word, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
