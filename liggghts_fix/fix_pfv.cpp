@@ -64,6 +64,8 @@ void FixPfv::init() {
   check_other_fixes();
   everywhere([&] { faces_.bind(settings_.faces); });
   array_atom = per_atom_->array_atom;
+  // computes behind variables have to be ready for the setup's evaluation
+  if (has_variables()) modify->addstep_compute_all(update->ntimestep);
 }
 
 // ---------------------------------------------------------------------------------------- errors
@@ -182,17 +184,17 @@ pfv::Box FixPfv::current_box() {
   for (const PfvPatch& patch : settings_.patches)
     box.patches.push_back({patch.face, patch.rectangle, boundary_of(patch.boundary)});
   if (variables)
-    modify->addstep_compute(update->ntimestep + settings_.couple_every - steps_since_flow_);
+    modify->addstep_compute(update->ntimestep +
+                            std::max(1, settings_.couple_every - steps_since_flow_));
   return box;
 }
 
 // ------------------------------------------------------------------------------------- flow calls
 
-/// Collects what one flow call needs; collective.
+/// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
   grains_.gather(groupbit);
   everywhere([&] { faces_.read(); });
-  box_ = current_box();
 }
 
 /// Completes the box on rank 0, where the grains are.
@@ -239,6 +241,7 @@ Eigen::Vector3d FixPfv::gravity() const {
 void FixPfv::setup(int) {
   settings_.fluid.gravity = gravity();
   read_host();
+  box_ = current_box();
   if (steps_since_flow_ == 0) last_positions_ = faces_.positions();
   on_root([&] {
     place_faces(box_);
@@ -260,7 +263,9 @@ void FixPfv::post_force(int) {
 void FixPfv::advance() {
   if (gravity() != settings_.fluid.gravity)
     error->fix_error(FLERR, this, "gravity has changed within a run; change it between runs");
+  steps_since_flow_ = 0;
   read_host();
+  box_ = current_box();
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
   const bool mean = settings_.couple_every > 1;
@@ -277,7 +282,6 @@ void FixPfv::advance() {
     flow_->step(grains_.packing(), elapsed_);
     if (mean) last_grains_ = grains_.snapshot();
   });
-  steps_since_flow_ = 0;
   elapsed_ = 0.0;
   after_flow_call();
 }
@@ -320,6 +324,7 @@ int FixPfv::modify_param(int narg, char** arg) {
 
 /// The run that goes on builds its network anew from the grains of the restart file, just as the
 /// run that starts from the file will: both go on from the same network, strain and pressures.
+/// Boundary values stay as they were: between runs LIGGGHTS cannot evaluate every variable.
 void FixPfv::write_restart(FILE* file) {
   read_host();
   PfvRestartRecord record;

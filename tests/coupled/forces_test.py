@@ -91,6 +91,16 @@ class Forces(CoupledTest):
         doubled = {n: [2 * v for v in f] for n, f in forces(steps[0]).items()}
         self.assertLess(largest_difference(forces(steps[1]), doubled), 1e-13)
 
+    def test_variables_may_ask_computes(self):
+        """Energies are tallied only in steps that were announced: each flow step has to be."""
+        flow = FLOW.replace("pressure 10", "pressure v_p")
+        self.liggghts("include in.packing\ncompute e all pe\nvariable p equal 10+0*c_e\n"
+                      f"fix flow all pfv {flow} couple_every 3\n" + dump("d.dump") + "run 7\n")
+        variable = (self.folder / "d.dump").read_bytes()
+        self.liggghts(f"include in.packing\nfix flow all pfv {FLOW} couple_every 3\n" +
+                      dump("d.dump") + "run 7\n")
+        self.assertEqual((self.folder / "d.dump").read_bytes(), variable)
+
     def test_grains_outside_the_group_are_invisible(self):
         self.liggghts("include in.packing\nregion half block -1 1 -1 1 -1 0.05 units box\n"
                       f"group wet region half\nfix flow wet pfv {FLOW}\n{dump('d.dump')}run 0\n")

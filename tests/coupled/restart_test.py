@@ -41,6 +41,10 @@ class Restart(CoupledTest):
         rows = self.compare(f"fix flow all pfv {FLOW} bulk_modulus 1e4\n")
         self.assertGreater(abs(rows[0]["flow[7]"]), 0.0)
 
+    def test_pressure_from_a_variable_that_asks_a_compute(self):
+        flow = FLOW.replace("pressure 10", "pressure v_p")
+        self.compare(f"compute e all pe\nvariable p equal 10+0*c_e\nfix flow all pfv {flow}\n")
+
     def test_between_two_flow_steps(self):
         self.compare(f"fix flow all pfv {FLOW} couple_every 4\n")
 
