@@ -7,7 +7,7 @@
 namespace pfv {
 
 BallSection beyond_plane(double radius, double a, double b, double c) {
-  if (radius <= a || c <= 0.0) return {};
+  if (radius <= a || b <= 0.0 || c <= 0.0) return {};
   const double circle2 = radius * radius - a * a;  // of the circle cut into the plane
   const double circle = std::sqrt(circle2);
   const double cube = radius * radius * radius / 3.0;

@@ -24,6 +24,15 @@ bool add_axis(Eigen::Matrix3d& axes, int count, Eigen::Vector3d direction) {
   return true;
 }
 
+/// Signed distance of sphere k's centre from the wall or from the radical plane it shares with `vertex`.
+/// Not by way of the cells' centres: their rounding would put a centre on the plane on both sides of it.
+double plane_distance(const Spheres& spheres, int k, Vertex vertex) {
+  if (is_wall(vertex)) return spheres.distance(k, wall_number(vertex));
+  const double r = spheres.radii[k], other = spheres.radii[vertex];
+  const double distance = spheres.towards(k, vertex).norm();
+  return 0.5 * (distance + (r - other) * (r + other) / distance);
+}
+
 /// What the plane shared with `cell[other]` takes from sphere `cell[corner]` within this cell.
 BallSection cut_within_cell(const PoreNetwork& network, const Spheres& spheres, int c, int corner,
                             int other) {
@@ -33,7 +42,7 @@ BallSection cut_within_cell(const PoreNetwork& network, const Spheres& spheres, 
   Eigen::Matrix3d axes;
   BallSection sum;
   if (!add_axis(axes, 0, spheres.towards(k, cell[other]))) return sum;
-  const double a = axes.col(0).dot(centre);
+  const double a = plane_distance(spheres, k, cell[other]);
   if (std::abs(a) >= spheres.radii[k]) return sum;
   for (int third = 0; third < 4; ++third) {
     if (third == corner || third == other) continue;
@@ -66,9 +75,7 @@ SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
         const BallSection section = cut_within_cell(network, vertices, c, i, j);
         cut[k].volume += section.volume;
         cut[k].area += section.area;
-        const Eigen::Vector3d centre =
-            network.cell_centres.col(c) - vertices.centres.col(cell[i]);
-        if (centre.dot(vertices.towards(cell[i], cell[j])) < 0.0) centre_outside[k] = 1;
+        if (plane_distance(vertices, cell[i], cell[j]) < 0.0) centre_outside[k] = 1;
       }
   }
   for (const int k : network.hidden) centre_outside[k] = 1;
