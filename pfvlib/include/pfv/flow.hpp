@@ -31,6 +31,13 @@ struct FlowState {
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
 };
 
+/// What a staged step must know of the grains, one entry (or column) a sphere of the packing.
+struct GrainDynamics {
+  Eigen::Map<const Eigen::VectorXd> masses{nullptr, 0};  ///< kg, > 0; infinite: a grain whose velocity
+                                                         ///< is prescribed (frozen, moved by force)
+  Eigen::Map<const Eigen::Matrix3Xd> other_forces{nullptr, 3, 0};  ///< N: contacts, gravity, ...
+};
+
 struct FlowData;
 
 /// Flow through the pores of a moving packing: the one owner of state, who alone knows what is stale.
@@ -61,6 +68,15 @@ class Flow {
   /// `packing.velocities` are the mean velocities over dt (method: backward Euler, thesis eq. 4.8).
   /// Advances time, strain and stored pressures. The result is valid until the next call.
   const Forces& step(const Packing& packing, double dt);
+
+  /// The same advance where dt may exceed `time_step_limit`: the drag of the fluid is integrated over
+  /// the step in Chebyshev sub-stages on the kept factor, with the other forces held, and the forces
+  /// returned are their mean over the step. `packing.velocities` must be those of the instant from
+  /// which the host will apply the forces over dt (leapfrog: v(n+1/2)). Below the limit this is
+  /// `step`. Cost: about 1.6 sqrt(dt / limit) solves a step. Verwer 1996, eqs. of the first-order RKC.
+  const Forces& step_staged(const Packing& packing, double dt, const GrainDynamics& grains);
+  /// Sub-stages of the last step.
+  int stages() const;
 
   /// The same solve without advancing anything: a steady state, the setup of a run, a repeated
   /// timing. `dt` is needed (> 0) only for a compressible fluid.

@@ -4,7 +4,6 @@
 #include "coupling/flow_data.hpp"
 #include "network/pore_network.hpp"
 #include "pfv/error.hpp"
-#include "physics/time_step_limit.hpp"
 
 #include <cmath>
 #include <limits>
@@ -49,6 +48,14 @@ const Forces& Flow::step(const Packing& packing, double dt) {
     throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
   return data_->compute(packing, dt, true);
 }
+
+const Forces& Flow::step_staged(const Packing& packing, double dt, const GrainDynamics& grains) {
+  if (!(dt > 0.0) || !std::isfinite(dt))
+    throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
+  return data_->compute_staged(packing, dt, grains);
+}
+
+int Flow::stages() const { return data_->stages; }
 
 const Forces& Flow::evaluate(const Packing& packing, double dt) {
   if (!(dt >= 0.0) || !std::isfinite(dt))
@@ -152,34 +159,7 @@ double Flow::mean_pressure() const {
 
 double Flow::time_step_limit(const Eigen::VectorXd& masses) {
   data_->require_result();
-  BuiltNetwork& built = *data_->built;
-  if (masses.size() != static_cast<Eigen::Index>(data_->packing_ids.size()))
-    throw InputError("time_step_limit: " + std::to_string(masses.size()) + " masses for " +
-                     std::to_string(data_->packing_ids.size()) + " spheres; give one a sphere");
-  if (!(masses.array() > 0.0).all() || !masses.allFinite())
-    throw InputError("time_step_limit: a mass is not a positive number; give kg");
-  if (built.time_step_limit && masses == built.limit_masses) return *built.time_step_limit;
-  built.limit_masses = masses;
-  const int spheres = built.grains.spheres.size();
-  double eigenvalue = 0.0;
-  if (built.unknowns.count > 0 && spheres > 0) {
-    const VolumeRateMatrix rates_matrix = volume_rate_matrix(built.network, built.vertices);
-    const ForceMatrix force = force_matrix(built.network, built.throats, spheres, {true, true});
-    Box fixed = data_->box;
-    for (FaceCondition& face : fixed.faces) face.velocity = 0.0;
-    const auto drag = [&](const Eigen::VectorXd& v) {
-      const Eigen::VectorXd rates =
-          volume_rates(rates_matrix, built.network, v.reshaped(3, spheres), fixed);
-      Eigen::Matrix3Xd acceleration =
-          multiply(force, homogeneous_pressures(built, rates)).leftCols(spheres);
-      for (int i = 0; i < spheres; ++i) acceleration.col(i) /= masses[built.grains.columns[i]];
-      return Eigen::VectorXd(acceleration.reshaped());
-    };
-    eigenvalue = largest_eigenvalue(drag, 3 * spheres);
-  }
-  built.time_step_limit =
-      eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
-  return *built.time_step_limit;
+  return data_->time_step_limit(masses);
 }
 
 std::int64_t Flow::retriangulations() const { return data_->retriangulations; }

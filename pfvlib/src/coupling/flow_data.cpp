@@ -120,19 +120,22 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     solved = false;
     rebuild_if_stale(packing);
     assemble_and_factor(step);
-    solve_pressures(packing, advance ? time + step : time);
+    update_rates(packing);
+    solve_pressures(advance ? time + step : time);
     if (options.forces) compute_forces(packing);
     dt = step;
     solved = true;
     faces = face_results(*this);
-    if (advance) {
-      time += step;
-      add_strain(step);
-      if (fluid.bulk_modulus) old_pressures = pressures;
-    }
+    if (advance) end_step(step);
   }
   wall_total += wall_seconds() - wall_start;
   return forces;
+}
+
+void FlowData::end_step(double step) {
+  time += step;
+  add_strain(step);
+  if (fluid.bulk_modulus) old_pressures = pressures;
 }
 
 void FlowData::require_result() const {
@@ -325,23 +328,28 @@ void FlowData::refuse_isolated() const {
   }
 }
 
-void FlowData::solve_pressures(const Packing& packing, double at_time) {
+void FlowData::update_rates(const Packing& packing) {
   moving = !at_rest(packing, box);
   refuse_undetermined(moving);
-  const Eigen::Index pores = built->network.pores();
-  if (moving) {
-    const PhaseClock clock(seconds.assemble);
-    if (!built->volume_rate_matrix)
-      built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
-    rates = volume_rates(*built->volume_rate_matrix, built->network,
-                         active_velocities(packing, built->grains.columns), box);
-    ++counts.volume_rate;
-  } else {
-    rates = Eigen::VectorXd::Zero(pores);
-  }
+  if (moving)
+    rates = rates_of(active_velocities(packing, built->grains.columns));
+  else
+    rates = Eigen::VectorXd::Zero(built->network.pores());
   refuse_isolated();
+}
 
+Eigen::VectorXd FlowData::rates_of(const Eigen::Matrix3Xd& velocities) {
+  const PhaseClock clock(seconds.assemble);
+  if (!built->volume_rate_matrix)
+    built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
+  ++counts.volume_rate;
+  return volume_rates(*built->volume_rate_matrix, built->network, velocities, box);
+}
+
+/// Pressures for the present rates.
+void FlowData::solve_pressures(double at_time) {
   const PhaseClock clock(seconds.solve);
+  const Eigen::Index pores = built->network.pores();
   Eigen::VectorXd imposed = imposed_pressures(built->network, built->boundaries, box, at_time);
   double sum = 0.0;
   int count = 0;
@@ -378,8 +386,12 @@ void FlowData::solve_pressures(const Packing& packing, double at_time) {
                       "orders of magnitude or the imposed values are too large");
 }
 
-void FlowData::compute_forces(const Packing& packing) {
-  const PhaseClock clock(seconds.forces);
+Eigen::Vector3d FlowData::buoyancy_of(int sphere) const {
+  const double volume = 4.0 / 3.0 * pi * std::pow(built->grains.spheres.radii[sphere], 3);
+  return -fluid.density * volume * fluid.gravity;
+}
+
+void FlowData::make_force_matrices() {
   const int active = built->grains.spheres.size();
   if (!built->force_matrix) {
     built->force_matrix = force_matrix(built->network, built->throats, active, {true, true});
@@ -390,6 +402,12 @@ void FlowData::compute_forces(const Packing& packing) {
     if (options.sphere_pressure)
       built->surface_pressure = surface_pressure(built->network, built->vertices, active);
   }
+}
+
+void FlowData::compute_forces(const Packing& packing) {
+  const PhaseClock clock(seconds.forces);
+  make_force_matrices();
+  const int active = built->grains.spheres.size();
   const Eigen::Index n = packing.size();
   const auto spread = [&](const Eigen::Matrix3Xd& from, Eigen::Matrix3Xd& to) {
     to = Eigen::Matrix3Xd::Zero(3, n);
@@ -410,8 +428,7 @@ void FlowData::compute_forces(const Packing& packing) {
   }
   if (options.buoyancy && !fluid.gravity.isZero(0.0)) {
     for (int i = 0; i < active; ++i) {
-      const double volume = 4.0 / 3.0 * pi * std::pow(built->grains.spheres.radii[i], 3);
-      const Eigen::Vector3d lift = -fluid.density * volume * fluid.gravity;
+      const Eigen::Vector3d lift = buoyancy_of(i);
       forces.total.col(built->grains.columns[i]) += lift;
       if (options.split_forces) forces.pressure.col(built->grains.columns[i]) += lift;
     }

@@ -24,6 +24,7 @@ struct FlowData {
   bool solved = false;
   bool moving = false;
   double dt = 0.0;
+  int stages = 1;
   double reference = 0.0;                ///< pressure that was subtracted before solving, Pa
   Eigen::VectorXd rates;                 ///< dV/dt of each pore, m³/s
   Eigen::VectorXd storage;               ///< V^f / (K_f dt) of each pore, or empty
@@ -39,6 +40,9 @@ struct FlowData {
   std::vector<double> pending_pressures;  ///< from set_state, for the next network
 
   const Forces& compute(const Packing& packing, double step, bool advance);
+  /// The step in sub-stages that stay stable beyond the explicit limit (staged_step.cpp).
+  const Forces& compute_staged(const Packing& packing, double step, const GrainDynamics& grains);
+  double time_step_limit(const Eigen::VectorXd& masses);
   void require_result() const;
 
  private:
@@ -49,8 +53,14 @@ struct FlowData {
   void refuse_undetermined(bool moving_now) const;
   void refuse_isolated() const;
   void assemble_and_factor(double step);
-  void solve_pressures(const Packing& packing, double at_time);
+  void update_rates(const Packing& packing);
+  Eigen::VectorXd rates_of(const Eigen::Matrix3Xd& velocities);
+  void solve_pressures(double at_time);
+  Eigen::Vector3d buoyancy_of(int sphere) const;
+  void make_force_matrices();
   void compute_forces(const Packing& packing);
+  void run_stages(const Packing& packing, double step, const GrainDynamics& grains);
+  void end_step(double step);
   void add_strain(double step);
 };
 
