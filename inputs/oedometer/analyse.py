@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Holds a finished oedometer run against Terzaghi: table, figures, summary.json.
 
@@ -14,6 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+import layers
 import stress
 import terzaghi
 
@@ -83,10 +84,14 @@ def compare(run):
     late = run.strain[run.T_lid >= min(2.5, 0.98 * run.T_lid[-1])].mean()
     thermo = run.thermo()
     slices, effective, total = stress.profile(run, 0.1)
+    planes, uneven_times, uneven_p, uneven_U = layers.predict(run.base, f)
+    uneven_middle = np.interp(times, uneven_times, uneven_p[:, len(planes) // 2])
     error = abs(f["E_oed_unloading"] / f["E_oed"] - 1) + abs(f["K_loaded"] / f["K"] - 1)
     return {
         "p_rms": rms(middle - terzaghi.pressure(0.5, times)[:, 0]),
         "U_rms": rms(settled - terzaghi.settlement(times)),
+        "p_rms_uneven": rms(middle - uneven_middle),
+        "U_rms_uneven": rms(settled - np.interp(times, uneven_times, uneven_U)),
         "p_early_max": float(run.middle()[(run.T > 0) & (run.T < EARLY)].max()),
         "T_v_of_p_early_max": float(run.T[(run.T > 0) & (run.T < EARLY)][
             run.middle()[(run.T > 0) & (run.T < EARLY)].argmax()]),

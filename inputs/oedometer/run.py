@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Oedometer test: sample, dry test, permeability, coupled run, comparison with Terzaghi.
 
@@ -24,6 +24,7 @@ KEYS = {
     "LOAD": (float, 5000.0, "step load, Pa"),
     "VISCOSITY": (float, 0.0, "Pa s; 0: chosen from the grain size"),
     "TIME_STEP": (float, 0.0, "s; 0: chosen from contact and viscous limit"),
+    "BASE": (str, "floating", "floating or fixed"),
     "END": (float, 2.6, "duration of the loading, T_v"),
     "RETRIANGULATE": (float, 0.01, "pore strain"),
     "OUT": (str, "post/sample", "where results go, without ending"),
@@ -49,6 +50,8 @@ def parse(words):
             raise SystemExit(f"oedometer: {key} needs a number, not '{value}'") from None
     if settings["N"] < 100 or settings["SEED"] < 1 or settings["LOAD"] <= 0:
         raise SystemExit("oedometer: N must be at least 100, SEED at least 1, LOAD above 0")
+    if settings["BASE"] not in ("floating", "fixed"):
+        raise SystemExit("oedometer: BASE must be floating or fixed")
     return settings
 
 
@@ -74,9 +77,9 @@ def mean_radius(grains):
     return (volume / (4.0 / 3.0 * 3.141592653589793 * mean_cube)) ** (1.0 / 3.0)
 
 
-def viscosity_for(grains, small):
+def viscosity_for(grains):
     """K/mu independent of the grain size. README.md has the two limits between which this lies."""
-    return (5.0 if small else 10.0) * (mean_radius(grains) / 3.07e-3) ** 2
+    return 5.0 * (mean_radius(grains) / 3.07e-3) ** 2
 
 
 def viscous_limit(grains, viscosity):
@@ -87,7 +90,7 @@ def viscous_limit(grains, viscosity):
 
 
 class Progress:
-    """One line about every three seconds: percent, simulated time, estimated time left."""
+    """One line about every five seconds: percent, simulated time, estimated time left."""
 
     def __init__(self, stage, first, last, step_time):
         self.stage, self.first, self.last, self.step_time = stage, first, last, step_time
@@ -95,7 +98,7 @@ class Progress:
 
     def at(self, step):
         now = time.monotonic()
-        if now - self.shown < 3.0 or step <= self.first:
+        if now - self.shown < 5.0 or step <= self.first:
             return
         self.shown = now
         done = (step - self.first) / (self.last - self.first)
@@ -138,10 +141,11 @@ def liggghts(script, variables, log, progress=None):
     return said, child_seconds() - before
 
 
-def permeability(dump, height, viscosity, report):
+def permeability(dump, bottom, height, viscosity, report):
     """Permeability (m2) of a dump with frictionless side walls, as in the coupled run."""
     command = [str(BIN / "pfv"), "solve", "--packing", dump, "--wall", "symmetry",
-               "--box", "0", str(SIDE), "0", str(SIDE), "0", f"{height:.17g}",
+               "--box", "0", str(SIDE), "0", str(SIDE),
+               f"{bottom:.17g}", f"{bottom + height:.17g}",
                "--face", "zlo:pressure=5000", "--face", "zhi:pressure=0",
                "--viscosity", f"{viscosity:.17g}", "--report", report]
     done = subprocess.run(command, cwd=SCENE, capture_output=True, text=True)
@@ -154,7 +158,7 @@ def prepare(settings):
     """Sample and dry test. Returns what they measured."""
     out, grains = settings["OUT"], settings["N"]
     common = {"N": grains, "phi": solid_fraction(grains), "F0": CONFINEMENT * SIDE**2,
-              "out": out}
+              "base_moves": int(settings["BASE"] == "floating"), "out": out}
     print(f"sample of {grains} grains, seed {settings['SEED']}, under {CONFINEMENT / 1e3:.0f} kPa",
           flush=True)
     seeds = {f"s{k + 1}": prime for k, prime in enumerate(primes(settings["SEED"]))}
@@ -168,7 +172,7 @@ def prepare(settings):
     height = {name: float(said[name][0]) for name in ("rest", "early", "loaded", "unloaded")}
     loading = (height["rest"] - height["loaded"]) / height["rest"]
     unloading = (height["unloaded"] - height["loaded"]) / height["rest"]
-    sample.update(dry_height=height, dry_strain=loading, dry_strain_unloading=unloading,
+    sample.update(dry_height=height, loaded_bottom=float(said["loaded"][1]), dry_strain=loading, dry_strain_unloading=unloading,
                   dry_drift=(height["early"] - height["loaded"]) / (height["rest"] - height["loaded"]),
                   E_oed=settings["LOAD"] / loading, E_oed_unloading=settings["LOAD"] / unloading,
                   cpu_dry=cpu, cpu_dry_step=cpu / 14000)
@@ -177,17 +181,18 @@ def prepare(settings):
 
 def measure_permeability(settings, sample, viscosity):
     out, height = settings["OUT"], sample["dry_height"]
-    sample["K"] = permeability(out + ".dump", sample["height"], viscosity, out + "_K.json")
-    sample["K_loaded"] = permeability(out + "_loaded.dump", height["loaded"], viscosity,
-                                      out + "_K_loaded.json")
+    sample["K"] = permeability(out + ".dump", 0.0, sample["height"], viscosity,
+                               out + "_K.json")
+    sample["K_loaded"] = permeability(out + "_loaded.dump", sample["loaded_bottom"], height["loaded"],
+                                      viscosity, out + "_K_loaded.json")
 
 
 def plan(settings, sample):
     """Viscosity, time step and numbers of steps of the coupled run."""
     grains = settings["N"]
-    viscosity = settings["VISCOSITY"] or viscosity_for(grains, settings["SMALL"])
+    viscosity = settings["VISCOSITY"] or viscosity_for(grains)
     limit = viscous_limit(grains, viscosity)
-    step = settings["TIME_STEP"] or min(sample["contact_step"], 0.8 * limit)
+    step = settings["TIME_STEP"] or min(sample["contact_step"], 0.6 * limit)
     if "K" not in sample:
         measure_permeability(settings, sample, viscosity)
     consolidation = sample["K"] / viscosity * sample["E_oed"]  # C_v, m2/s
@@ -207,7 +212,8 @@ def couple(settings, sample, planned):
             old.unlink()
     variables = {key: planned[key] for key in
                  ("viscosity", "time_step", "stride", "every", "rest_to", "steps")}
-    variables.update(N=grains, phi=solid_fraction(grains), F0=CONFINEMENT * SIDE**2,
+    variables["report"] = max(1, planned["steps"] // 100)
+    variables.update(N=grains, base_moves=int(settings["BASE"] == "floating"), phi=solid_fraction(grains), F0=CONFINEMENT * SIDE**2,
                      dF=settings["LOAD"] * SIDE**2, out=out,
                      retriangulate=settings["RETRIANGULATE"])
     first, last = sample["step"], planned["rest_to"] + planned["steps"]

@@ -12,6 +12,7 @@ def vertical_moments(base, step):
     """z, radius and V sigma_zz of each grain: sum of -x_z F_z over its contacts and walls (thesis
     eq. 2.18), compression positive."""
     grains = read(base.parent / f"{base.name}_grains.{step}.txt")
+    grains = grains[np.argsort(grains[:, 0])]
     contacts = read(base.parent / f"{base.name}_contacts.{step}.txt")
     row = {int(tag): k for k, tag in enumerate(grains[:, 0])}
     first = np.array([row[int(tag)] for tag in contacts[:, 0]])
@@ -23,7 +24,7 @@ def vertical_moments(base, step):
     moment = np.zeros(len(grains))
     np.add.at(moment, first, -arm * radius[first] * force)
     np.add.at(moment, second, -arm * radius[second] * force)
-    moment += radius * grains[:, 3] - radius * grains[:, 4]
+    moment += radius * abs(grains[:, 3])
     return z, radius, moment
 
 
@@ -33,13 +34,15 @@ def share_below(z, radius, height):
     return depth**2 * (3 - depth) / 4
 
 
-def slice_stress(base, step, edges, area):
-    """sigma_zz averaged over horizontal slices, each grain sharing itself among them by volume; the
-    mean over the grains times (1 - n) is the sum of V sigma over the slice's volume."""
-    z, radius, moment = vertical_moments(base, step)
+def increments(base, steps, edges, area):
+    """Change of sigma_zz between two steps, averaged over horizontal slices; each grain shares itself
+    among them by its volume at the first step. The mean over the grains times (1 - n) is the sum of
+    V sigma over the slice's volume."""
+    z, radius, before = vertical_moments(base, steps[0])
+    _, _, after = vertical_moments(base, steps[1])
     below = np.array([share_below(z, radius, height) for height in edges])
     below[0], below[-1] = 0.0, 1.0
-    return (np.diff(below, axis=0) @ moment) / (np.diff(edges) * area)
+    return (np.diff(below, axis=0) @ (after - before)) / (np.diff(edges) * area)
 
 
 def profile(run, T_v, area=0.01):
@@ -47,10 +50,8 @@ def profile(run, T_v, area=0.01):
     f = run.figures
     slices = round(run.rest_height / (1.1e-2 * (1000 / f["N"]) ** (1 / 3)))  # one grain high
     edges = np.linspace(0.0, run.rest_height, slices + 1)
-    number = max(1, round(T_v * f["unit"] / f["time_step"] / f["stride"]))
-    before = slice_stress(run.base, f["rest_to"], edges, area)
-    after = slice_stress(run.base, f["rest_to"] + number * f["stride"], edges, area)
+    steps = max(1, round(T_v * f["unit"] / f["time_step"] / f["stride"])) * f["stride"]
+    effective = increments(run.base, (f["rest_to"], f["rest_to"] + steps), edges, area) / run.load
     heights = (edges[1:] + edges[:-1]) / 2 / run.rest_height
-    effective = (after - before) / run.load
-    p, _ = run.at(number * f["stride"] * f["time_step"] / f["unit"])
+    p, _ = run.at(steps * f["time_step"] / f["unit"])
     return heights, effective, effective + np.interp(heights, run.heights, p)
