@@ -52,7 +52,7 @@ const Forces& Flow::step(const Packing& packing, double dt) {
 const Forces& Flow::step_staged(const Packing& packing, double dt, const GrainDynamics& grains) {
   if (!(dt > 0.0) || !std::isfinite(dt))
     throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
-  return data_->compute_staged(packing, dt, grains);
+  return data_->compute(packing, dt, true, &grains);
 }
 
 int Flow::stages() const { return data_->stages; }

@@ -6,11 +6,7 @@
 #include "pfv/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <sstream>
 
 namespace pfv {
 
@@ -18,100 +14,10 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-bool any_boundary(const Box& box, Boundary::Kind kind, bool nonzero_only = false) {
-  for (int b = 0; b < 6 + static_cast<int>(box.patches.size()); ++b) {
-    const Boundary& boundary = boundary_of(box, b);
-    if (boundary.kind == kind && (!nonzero_only || boundary.value != 0.0)) return true;
-  }
-  return false;
-}
-
-std::string place_of(const BuiltNetwork& built, int pore) {
-  const Eigen::Vector3d x = built.network.origin + built.network.pore_centres.col(pore);
-  std::ostringstream text;
-  text << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")";
-  return text.str();
-}
-
-/// Spheres around a set of pores, ascending.
-std::vector<int> spheres_around(const BuiltNetwork& built, const std::vector<int>& pores) {
-  std::vector<int> spheres;
-  for (int c = 0; c < built.network.cells(); ++c)
-    if (std::binary_search(pores.begin(), pores.end(), built.network.cell_pore[c]))
-      for (const Vertex vertex : built.network.cell_vertices[c])
-        if (!is_wall(vertex)) spheres.push_back(vertex);
-  std::sort(spheres.begin(), spheres.end());
-  spheres.erase(std::unique(spheres.begin(), spheres.end()), spheres.end());
-  return spheres;
-}
-
-/// The vertices of each cell by the ids of their grains, ascending, with the number of the cell.
-std::vector<std::pair<std::array<std::int64_t, 4>, int>> named_cells(const BuiltNetwork& built) {
-  constexpr std::int64_t walls = std::numeric_limits<std::int64_t>::min();
-  std::vector<std::pair<std::array<std::int64_t, 4>, int>> names(built.network.cells());
-  for (int c = 0; c < built.network.cells(); ++c) {
-    names[c].second = c;
-    for (int i = 0; i < 4; ++i) {
-      const Vertex vertex = built.network.cell_vertices[c][i];
-      names[c].first[i] =
-          is_wall(vertex) ? walls + wall_number(vertex) : built.vertices.ids[vertex];
-    }
-    std::sort(names[c].first.begin(), names[c].first.end());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-/// For each cell of `now` the cell of `old` with the same vertices, or -1.
-std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& now) {
-  const auto before = named_cells(old), after = named_cells(now);
-  std::vector<int> survivors(now.network.cells(), -1);
-  auto next = before.begin();
-  for (const auto& [name, cell] : after) {
-    while (next != before.end() && next->first < name) ++next;
-    if (next != before.end() && next->first == name) survivors[cell] = next->second;
-  }
-  return survivors;
-}
-
 }  // namespace
 
-Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources) {
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x(built.unknowns.count);
-  const auto& unknown = built.unknowns.of_pore;
-  for (std::size_t p = 0; p < unknown.size(); ++p)
-    if (unknown[p] >= 0) b[unknown[p]] += sources[static_cast<Eigen::Index>(p)];
-  if (built.unknowns.count > 0) built.solver->solve(b, x);
-  Eigen::VectorXd pressures = Eigen::VectorXd::Zero(sources.size());
-  for (std::size_t p = 0; p < unknown.size(); ++p)
-    if (unknown[p] >= 0) pressures[static_cast<Eigen::Index>(p)] = x[unknown[p]];
-  return pressures;
-}
-
-std::vector<double> strain_volumes(const PoreNetwork& network, const Throats& throats,
-                                   const Spheres& spheres) {
-  std::vector<double> smallest(network.pores(), std::numeric_limits<double>::infinity());
-  for (int c = 0; c < network.cells(); ++c)
-    for (const Vertex vertex : network.cell_vertices[c])
-      if (!is_wall(vertex)) {
-        double& radius = smallest[network.cell_pore[c]];
-        radius = std::min(radius, spheres.radii[vertex]);
-      }
-  std::vector<double> volumes(throats.pore_fluid_volume);
-  for (int p = 0; p < network.pores(); ++p)
-    volumes[p] = std::max(volumes[p], 0.01 * 4.0 / 3.0 * pi * std::pow(smallest[p], 3));
-  return volumes;
-}
-
-Eigen::VectorXd storage_volumes(const Throats& throats) {
-  Eigen::VectorXd volumes(static_cast<Eigen::Index>(throats.pore_volume.size()));
-  for (std::size_t p = 0; p < throats.pore_volume.size(); ++p)
-    volumes[static_cast<Eigen::Index>(p)] =
-        std::max(throats.pore_fluid_volume[p], 0.01 * throats.pore_volume[p]);
-  return volumes;
-}
-
-const Forces& FlowData::compute(const Packing& packing, double step, bool advance) {
+const Forces& FlowData::compute(const Packing& packing, double step, bool advance,
+                                const GrainDynamics* grains) {
   if (fluid.bulk_modulus && !(step > 0.0))
     throw InputError("a compressible fluid needs a time step > 0");
   const double wall_start = wall_seconds();
@@ -121,7 +27,11 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     rebuild_if_stale(packing);
     assemble_and_factor(step);
     update_rates(packing);
-    solve_pressures(advance ? time + step : time);
+    stages = 1;
+    if (grains)
+      run_stages(packing, step, *grains);
+    else
+      solve_pressures(advance ? time + step : time);
     if (options.forces) compute_forces(packing);
     dt = step;
     solved = true;
@@ -157,7 +67,7 @@ void FlowData::rebuild_if_stale(const Packing& packing) {
       old_pressures = Eigen::Map<const Eigen::VectorXd>(pending_pressures.data(),
                                                         old_pressures.size());
     else if (old && old_values.size() == old->network.pores())
-      take_over_pressures(*old, old_values);
+      old_pressures = carried_pressures(*old, old_values, *built);
   }
   pending_pressures.clear();
   stale = false;
@@ -220,37 +130,6 @@ void FlowData::build(const Packing& packing) {
   counts.merged_pores = built->network.cells() - built->network.pores();
 }
 
-void FlowData::take_over_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values) {
-  if (old.network.cells() == 0 || built->network.pores() == 0) return;
-  // a cell that survives keeps its pressure: its dual vertex need not lie in it, so its place is no
-  // guide to it
-  const std::vector<int> survivors = surviving_cells(old, *built);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(built->network.pores());
-  Eigen::VectorXi count = Eigen::VectorXi::Zero(built->network.pores());
-  for (int c = 0; c < built->network.cells(); ++c)
-    if (survivors[c] >= 0) {
-      sum[built->network.cell_pore[c]] += old_values[old.network.cell_pore[survivors[c]]];
-      ++count[built->network.cell_pore[c]];
-    }
-  int cell = 0;
-  for (int p = 0; p < built->network.pores(); ++p) {
-    if (count[p] > 0) {
-      old_pressures[p] = sum[p] / count[p];
-      continue;
-    }
-    const Eigen::Vector3d place =
-        (built->network.origin + built->network.pore_centres.col(p) - old.network.origin)
-            .cwiseMax(0.0)
-            .cwiseMin(old.vertices.edges);
-    cell = locate(old.network, old.vertices, place, cell);
-    old_pressures[p] = old_values[old.network.cell_pore[cell]];
-  }
-  // the sum of V^f p is what the storage term conserves (thesis eq. 4.8 with compressibility)
-  const Eigen::VectorXd before = storage_volumes(old.throats);
-  const Eigen::VectorXd now = storage_volumes(built->throats);
-  old_pressures.array() += (before.dot(old_values) - now.dot(old_pressures)) / now.sum();
-}
-
 void FlowData::assemble_and_factor(double step) {
   const bool compressible = fluid.bulk_modulus.has_value();
   if (built->solver && (!compressible || step == built->storage_dt)) return;
@@ -279,53 +158,6 @@ void FlowData::assemble_and_factor(double step) {
     ++counts.factor;
   }
   built->storage_dt = step;
-}
-
-void FlowData::refuse_undetermined(bool moving_now) const {
-  // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
-  if (fluid.bulk_modulus || box.any_periodic() || any_boundary(box, Boundary::Kind::pressure))
-    return;
-  if (moving_now)
-    throw InputError("the grains or faces move, the fluid is incompressible, and no face or patch "
-                     "has a pressure: nothing determines the pressure; give a pressure to a face, "
-                     "or a bulk modulus");
-  if (any_boundary(box, Boundary::Kind::flux, true))
-    throw InputError("a flux is imposed, the fluid is incompressible, and no face or patch has a "
-                     "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
-                     "modulus");
-}
-
-/// A set of pores without any way to a pressure can only be at rest.
-void FlowData::refuse_isolated() const {
-  for (const Isolated& isolated : built->system.isolated) {
-    double net = 0.0, gross = 0.0;
-    for (const int pore : isolated.pores) {
-      net -= rates[pore];
-      gross += std::abs(rates[pore]);
-    }
-    for (std::size_t b = 0; b < built->unknowns.of_boundary.size(); ++b) {
-      const int shared = built->unknowns.of_boundary[b];
-      const bool fed = shared >= 0 && std::any_of(isolated.pores.begin(), isolated.pores.end(),
-                                                  [&](int pore) {
-                                                    return built->unknowns.of_pore[pore] == shared;
-                                                  });
-      if (!fed) continue;
-      net += boundary_of(box, static_cast<int>(b)).value;
-      gross += std::abs(boundary_of(box, static_cast<int>(b)).value);
-    }
-    // rates are sums of area times velocity: their own round-off is no change of volume
-    const double noise = 1e-12 * rates.cwiseAbs().maxCoeff();
-    if (std::abs(net) <= 1e-10 * gross + noise) continue;
-    std::ostringstream rate;
-    rate << net;
-    throw InputError(
-        std::to_string(isolated.pores.size()) + " pore(s) near " +
-        place_of(*built, isolated.pores.front()) + " between " +
-        sphere_list(built->vertices.ids, spheres_around(*built, isolated.pores)) +
-        " are cut off from every pressure, but " + rate.str() +
-        " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk "
-        "modulus, or reduce the overlaps");
-  }
 }
 
 void FlowData::update_rates(const Packing& packing) {

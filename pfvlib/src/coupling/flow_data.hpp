@@ -39,9 +39,9 @@ struct FlowData {
   std::vector<std::int64_t> packing_ids;
   std::vector<double> pending_pressures;  ///< from set_state, for the next network
 
-  const Forces& compute(const Packing& packing, double step, bool advance);
-  /// The step in sub-stages that stay stable beyond the explicit limit (staged_step.cpp).
-  const Forces& compute_staged(const Packing& packing, double step, const GrainDynamics& grains);
+  /// With `grains` the step is divided in stages that stay stable beyond the explicit limit.
+  const Forces& compute(const Packing& packing, double step, bool advance,
+                        const GrainDynamics* grains = nullptr);
   double time_step_limit(const Eigen::VectorXd& masses);
   void require_result() const;
 
@@ -49,7 +49,6 @@ struct FlowData {
   void rebuild_if_stale(const Packing& packing);
   bool needs_rebuild(const Packing& packing) const;
   void build(const Packing& packing);
-  void take_over_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values);
   void refuse_undetermined(bool moving_now) const;
   void refuse_isolated() const;
   void assemble_and_factor(double step);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/flow_data.hpp"
 
-#include "coupling/phase_clock.hpp"
 #include "pfv/error.hpp"
 #include "physics/chebyshev_stages.hpp"
 #include "physics/time_step_limit.hpp"
@@ -56,32 +55,12 @@ double FlowData::time_step_limit(const Eigen::VectorXd& masses) {
   return *built->time_step_limit;
 }
 
-const Forces& FlowData::compute_staged(const Packing& packing, double step,
-                                       const GrainDynamics& grains) {
-  if (!options.forces) throw InputError("a staged step needs forces: switch Options::forces on");
-  check(grains, packing);
-  const double wall_start = wall_seconds();
-  {
-    const PhaseClock clock(seconds.total);
-    solved = false;
-    rebuild_if_stale(packing);
-    assemble_and_factor(step);
-    update_rates(packing);
-    run_stages(packing, step, grains);
-    compute_forces(packing);
-    dt = step;
-    solved = true;
-    faces = face_results(*this);
-    end_step(step);
-  }
-  wall_total += wall_seconds() - wall_start;
-  return forces;
-}
-
 /// Integrates m dv/dt = (other forces) + S p(v) over the step. The mean pressure and the mean volume
 /// rates are carried through the same recursion from zero; by linearity S times the mean pressure is
 /// the mean force, so that forces, fluxes and volumes of the step balance exactly.
 void FlowData::run_stages(const Packing& packing, double step, const GrainDynamics& grains) {
+  if (!options.forces) throw InputError("a staged step needs forces: switch Options::forces on");
+  check(grains, packing);
   const double limit = time_step_limit(grains.masses);
   const std::vector<ChebyshevStage> all = chebyshev_stages(2.0 * step / limit);
   stages = static_cast<int>(all.size());

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Boundaries and motions that leave the pressure undetermined: refused before anything is solved.
+#include "coupling/flow_data.hpp"
+
+#include "pfv/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace pfv {
+
+namespace {
+
+bool any_boundary(const Box& box, Boundary::Kind kind, bool nonzero_only = false) {
+  for (int b = 0; b < 6 + static_cast<int>(box.patches.size()); ++b) {
+    const Boundary& boundary = boundary_of(box, b);
+    if (boundary.kind == kind && (!nonzero_only || boundary.value != 0.0)) return true;
+  }
+  return false;
+}
+
+std::string place_of(const BuiltNetwork& built, int pore) {
+  const Eigen::Vector3d x = built.network.origin + built.network.pore_centres.col(pore);
+  std::ostringstream text;
+  text << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")";
+  return text.str();
+}
+
+/// Spheres around a set of pores, ascending.
+std::vector<int> spheres_around(const BuiltNetwork& built, const std::vector<int>& pores) {
+  std::vector<int> spheres;
+  for (int c = 0; c < built.network.cells(); ++c)
+    if (std::binary_search(pores.begin(), pores.end(), built.network.cell_pore[c]))
+      for (const Vertex vertex : built.network.cell_vertices[c])
+        if (!is_wall(vertex)) spheres.push_back(vertex);
+  std::sort(spheres.begin(), spheres.end());
+  spheres.erase(std::unique(spheres.begin(), spheres.end()), spheres.end());
+  return spheres;
+}
+
+}  // namespace
+
+void FlowData::refuse_undetermined(bool moving_now) const {
+  // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
+  if (fluid.bulk_modulus || box.any_periodic() || any_boundary(box, Boundary::Kind::pressure))
+    return;
+  if (moving_now)
+    throw InputError("the grains or faces move, the fluid is incompressible, and no face or patch "
+                     "has a pressure: nothing determines the pressure; give a pressure to a face, "
+                     "or a bulk modulus");
+  if (any_boundary(box, Boundary::Kind::flux, true))
+    throw InputError("a flux is imposed, the fluid is incompressible, and no face or patch has a "
+                     "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
+                     "modulus");
+}
+
+/// A set of pores without any way to a pressure can only be at rest.
+void FlowData::refuse_isolated() const {
+  for (const Isolated& isolated : built->system.isolated) {
+    double net = 0.0, gross = 0.0;
+    for (const int pore : isolated.pores) {
+      net -= rates[pore];
+      gross += std::abs(rates[pore]);
+    }
+    for (std::size_t b = 0; b < built->unknowns.of_boundary.size(); ++b) {
+      const int shared = built->unknowns.of_boundary[b];
+      const bool fed = shared >= 0 && std::any_of(isolated.pores.begin(), isolated.pores.end(),
+                                                  [&](int pore) {
+                                                    return built->unknowns.of_pore[pore] == shared;
+                                                  });
+      if (!fed) continue;
+      net += boundary_of(box, static_cast<int>(b)).value;
+      gross += std::abs(boundary_of(box, static_cast<int>(b)).value);
+    }
+    // rates are sums of area times velocity: their own round-off is no change of volume
+    const double noise = 1e-12 * rates.cwiseAbs().maxCoeff();
+    if (std::abs(net) <= 1e-10 * gross + noise) continue;
+    std::ostringstream rate;
+    rate << net;
+    throw InputError(
+        std::to_string(isolated.pores.size()) + " pore(s) near " +
+        place_of(*built, isolated.pores.front()) + " between " +
+        sphere_list(built->vertices.ids, spheres_around(*built, isolated.pores)) +
+        " are cut off from every pressure, but " + rate.str() +
+        " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk "
+        "modulus, or reduce the overlaps");
+  }
+}
+
+}  // namespace pfv
