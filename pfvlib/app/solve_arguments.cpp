@@ -73,6 +73,7 @@ Fluid fluid_of(const SolveArguments& arguments) {
 Options options_of(const SolveArguments& arguments) {
   Options options;
   options.conductance = conductance_law_named(arguments.conductance);
+  options.partition = partition_named(arguments.partition);
   options.solver = solver_named(arguments.solver);
   options.ordering = ordering_named(arguments.ordering);
   // Only what an output shows is computed: the report holds the sum of the forces.
@@ -174,11 +175,16 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
   const std::string group = "Method";
   const Options defaults;
   arguments.conductance = name_of(defaults.conductance);
+  arguments.partition = name_of(defaults.partition);
   arguments.solver = name_of(defaults.solver);
   arguments.ordering = name_of(defaults.ordering);
   command.add_option("--conductance", arguments.conductance,
                      "conductance law of a throat (default " + arguments.conductance + ")")
-      ->option_text("hydraulic_radius|effective_radius")->group(group);
+      ->option_text("hydraulic_radius|effective_radius|open_throat")->group(group);
+  command.add_option("--partition", arguments.partition,
+                     "geometry of a throat: signed volumes, or YADE's rules to reproduce its\n"
+                     "results (default " + arguments.partition + ")")
+      ->option_text("signed|yade")->group(group);
   command.add_option("--solver", arguments.solver,
                      "linear solver (default " + arguments.solver + ": cholmod)")
       ->option_text("auto|cholmod|klu2")->group(group);

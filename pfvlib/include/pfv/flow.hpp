@@ -75,6 +75,8 @@ class Flow {
   /// which the host will apply the forces over dt (leapfrog: v(n+1/2)). Below the limit this is
   /// `step`. Cost: about 1.6 sqrt(dt / limit) solves a step. Verwer 1996, eqs. of the first-order RKC.
   const Forces& step_staged(const Packing& packing, double dt, const GrainDynamics& grains);
+  /// The same without advancing anything: the setup of a run.
+  const Forces& evaluate_staged(const Packing& packing, double dt, const GrainDynamics& grains);
   /// Sub-stages of the last step.
   int stages() const;
 

@@ -6,8 +6,9 @@
 namespace pfv {
 
 /// Conductance of a throat. `hydraulic_radius`: Chareyre et al. 2012 eqs. 7-9 with alpha = 1/2.
-/// `effective_radius`: eq. 10.
-enum class ConductanceLaw { hydraulic_radius, effective_radius };
+/// `effective_radius`: eq. 10. `open_throat`: the hydraulic radius where spheres touch, the drag of the
+/// spheres where they do not.
+enum class ConductanceLaw { hydraulic_radius, effective_radius, open_throat };
 
 /// Direct solvers, all behind Amesos2. `automatic` is cholmod; klu2 is the plain reference.
 enum class SolverKind { automatic, cholmod, klu2 };
@@ -15,11 +16,17 @@ enum class SolverKind { automatic, cholmod, klu2 };
 /// Fill-reducing ordering. `automatic` is metis; klu2 has its own (amd) and refuses another.
 enum class OrderingKind { automatic, metis, amd };
 
+/// How a throat's domain is parted among pores and spheres. `signed_angles`: signed volumes and solid
+/// angles, whose sums are the pore volume and the solid surface. `yade`: the rules of YADE's FlowEngine,
+/// to reproduce its results.
+enum class Partition { signed_angles, yade };
+
 /// What to do with a grain whose centre is not inside the flow box.
 enum class OutsideGrains { refuse, leave_out };
 
 struct Options {
   ConductanceLaw conductance = ConductanceLaw::hydraulic_radius;
+  Partition partition = Partition::signed_angles;
   SolverKind solver = SolverKind::automatic;
   OrderingKind ordering = OrderingKind::automatic;
   OutsideGrains outside = OutsideGrains::refuse;
@@ -37,9 +44,11 @@ void check(const Options& options);
 /// The name that the command line and the fix use, and back (InputError for an unknown one, with the
 /// list of those that exist).
 const char* name_of(ConductanceLaw law);
+const char* name_of(Partition partition);
 const char* name_of(SolverKind solver);
 const char* name_of(OrderingKind ordering);
 ConductanceLaw conductance_law_named(const std::string& name);
+Partition partition_named(const std::string& name);
 SolverKind solver_named(const std::string& name);
 OrderingKind ordering_named(const std::string& name);
 

@@ -28,6 +28,11 @@ bool same_kinds(const Box& a, const Box& b) {
   return true;
 }
 
+void require_positive(double dt) {
+  if (!(dt > 0.0) || !std::isfinite(dt))
+    throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
+}
+
 }  // namespace
 
 Flow::Flow(Box box, Fluid fluid, Options options) : data_(std::make_unique<FlowData>()) {
@@ -44,15 +49,19 @@ Flow::Flow(Flow&&) noexcept = default;
 Flow& Flow::operator=(Flow&&) noexcept = default;
 
 const Forces& Flow::step(const Packing& packing, double dt) {
-  if (!(dt > 0.0) || !std::isfinite(dt))
-    throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
+  require_positive(dt);
   return data_->compute(packing, dt, true);
 }
 
 const Forces& Flow::step_staged(const Packing& packing, double dt, const GrainDynamics& grains) {
-  if (!(dt > 0.0) || !std::isfinite(dt))
-    throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
+  require_positive(dt);
   return data_->compute(packing, dt, true, &grains);
+}
+
+const Forces& Flow::evaluate_staged(const Packing& packing, double dt,
+                                    const GrainDynamics& grains) {
+  require_positive(dt);
+  return data_->compute(packing, dt, false, &grains);
 }
 
 int Flow::stages() const { return data_->stages; }

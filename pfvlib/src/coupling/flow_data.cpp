@@ -4,6 +4,7 @@
 #include "coupling/phase_clock.hpp"
 #include "network/pore_network.hpp"
 #include "pfv/error.hpp"
+#include "physics/yade_partition.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,10 +29,11 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     assemble_and_factor(step);
     update_rates(packing);
     stages = 1;
+    const double at_time = advance ? time + step : time;
     if (grains)
-      run_stages(packing, step, *grains);
+      run_stages(packing, step, at_time, *grains);
     else
-      solve_pressures(advance ? time + step : time);
+      solve_pressures(at_time);
     if (options.forces) compute_forces(packing);
     dt = step;
     solved = true;
@@ -118,8 +120,12 @@ void FlowData::build(const Packing& packing) {
     const Spheres& spheres = fresh->vertices;
     fresh->boundaries = find_pore_boundaries(fresh->network, box);
     fresh->throats = measure_throats(fresh->network, fresh->boundaries, spheres);
+    if (options.partition == Partition::yade)
+      apply_yade_partition(fresh->throats, fresh->network, spheres, box);
     fresh->conductances = conductances(options.conductance, fluid.viscosity, fresh->network,
                                        fresh->throats, spheres);
+    for (std::size_t t = 0; t < fresh->throats.conductance_factor.size(); ++t)
+      fresh->conductances.value[t] *= fresh->throats.conductance_factor[t];
     fresh->base_area = base_areas(fresh->network, fresh->boundaries, spheres);
     fresh->strain_volume = strain_volumes(fresh->network, fresh->throats, spheres);
   }

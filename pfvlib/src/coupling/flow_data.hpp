@@ -58,7 +58,8 @@ struct FlowData {
   Eigen::Vector3d buoyancy_of(int sphere) const;
   void make_force_matrices();
   void compute_forces(const Packing& packing);
-  void run_stages(const Packing& packing, double step, const GrainDynamics& grains);
+  void run_stages(const Packing& packing, double step, double at_time,
+                  const GrainDynamics& grains);
   void end_step(double step);
   void add_strain(double step);
 };

@@ -20,9 +20,12 @@ constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 template <class Value>
 using Named = std::pair<Value, const char*>;
 
-constexpr std::array<Named<ConductanceLaw>, 2> conductance_laws{
+constexpr std::array<Named<ConductanceLaw>, 3> conductance_laws{
     {{ConductanceLaw::hydraulic_radius, "hydraulic_radius"},
-     {ConductanceLaw::effective_radius, "effective_radius"}}};
+     {ConductanceLaw::effective_radius, "effective_radius"},
+     {ConductanceLaw::open_throat, "open_throat"}}};
+constexpr std::array<Named<Partition>, 2> partitions{
+    {{Partition::signed_angles, "signed"}, {Partition::yade, "yade"}}};
 constexpr std::array<Named<SolverKind>, 3> solvers{{{SolverKind::automatic, "auto"},
                                                     {SolverKind::cholmod, "cholmod"},
                                                     {SolverKind::klu2, "klu2"}}};
@@ -145,11 +148,17 @@ Face face_named(const std::string& name) {
 const char* name_of(ConductanceLaw law) {
   return name_in(conductance_laws, law, "conductance law");
 }
+const char* name_of(Partition partition) {
+  return name_in(partitions, partition, "partition");
+}
 const char* name_of(SolverKind solver) { return name_in(solvers, solver, "solver"); }
 const char* name_of(OrderingKind ordering) { return name_in(orderings, ordering, "ordering"); }
 
 ConductanceLaw conductance_law_named(const std::string& name) {
   return value_in(conductance_laws, name, "conductance law");
+}
+Partition partition_named(const std::string& name) {
+  return value_in(partitions, name, "partition");
 }
 SolverKind solver_named(const std::string& name) { return value_in(solvers, name, "solver"); }
 OrderingKind ordering_named(const std::string& name) {
@@ -179,6 +188,7 @@ void check(const Fluid& fluid) {
 
 void check(const Options& options) {
   name_of(options.conductance);
+  name_of(options.partition);
   name_of(options.solver);
   name_of(options.ordering);
   if (options.outside != OutsideGrains::refuse && options.outside != OutsideGrains::leave_out)

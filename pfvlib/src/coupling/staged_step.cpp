@@ -58,13 +58,14 @@ double FlowData::time_step_limit(const Eigen::VectorXd& masses) {
 /// Integrates m dv/dt = (other forces) + S p(v) over the step. The mean pressure and the mean volume
 /// rates are carried through the same recursion from zero; by linearity S times the mean pressure is
 /// the mean force, so that forces, fluxes and volumes of the step balance exactly.
-void FlowData::run_stages(const Packing& packing, double step, const GrainDynamics& grains) {
+void FlowData::run_stages(const Packing& packing, double step, double at_time,
+                          const GrainDynamics& grains) {
   if (!options.forces) throw InputError("a staged step needs forces: switch Options::forces on");
   check(grains, packing);
   const double limit = time_step_limit(grains.masses);
   const std::vector<ChebyshevStage> all = chebyshev_stages(2.0 * step / limit);
   stages = static_cast<int>(all.size());
-  if (stages == 1) return solve_pressures(time + step);
+  if (stages == 1) return solve_pressures(at_time);
 
   make_force_matrices();
   const auto& columns = built->grains.columns;
@@ -84,7 +85,7 @@ void FlowData::run_stages(const Packing& packing, double step, const GrainDynami
                   rates_before = mean_pressure;
   for (const ChebyshevStage& stage : all) {
     rates = rates_of(now);
-    solve_pressures(time + step);
+    solve_pressures(at_time);
     const Eigen::Matrix3Xd fluid_force =
         multiply(*built->force_matrix, relative_pressures).leftCols(count);
     const Eigen::Matrix3Xd change =

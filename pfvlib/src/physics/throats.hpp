@@ -27,6 +27,7 @@ struct Throats {
   std::vector<double> length;        ///< L = |P_i P_j|, m
   std::vector<double> volume;        ///< phi, pore volume of the domain, m³
   std::vector<double> gamma;         ///< solid surface of the domain, no-slip walls included, m²
+  std::vector<double> conductance_factor;  ///< empty, or what the law's result is multiplied with
 
   // one entry a pore
   std::vector<double> pore_volume;        ///< of its cells, solid included, m³
