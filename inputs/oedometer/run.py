@@ -246,7 +246,7 @@ def main(words):
     try:
         if words == ["study"]:
             import study
-            study.study(run, parse)
+            study.study()
             return 0
         summary = run(parse(words))
     except Failure as failure:
@@ -256,4 +256,6 @@ def main(words):
 
 
 if __name__ == "__main__":
+    # one module, whether it is started or imported by study.py
+    sys.modules["run"] = sys.modules["__main__"]
     sys.exit(main(sys.argv[1:]))
