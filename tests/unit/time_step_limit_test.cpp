@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Limit of the explicit coupling: dt < 2 / lambda_max(M^-1 S G^-1 E).
+#include "pfv/pfv.hpp"
+#include "support/boxes.hpp"
+#include "support/packings.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace {
+
+using namespace support;
+
+struct Sample {
+  pfv::PackingArrays packing = data_packing("packing_100.csv");
+  Eigen::VectorXd masses = 2600.0 * 4.0 / 3.0 * pi * packing.radii.array().cube();
+  pfv::Flow flow{pressure_box(pfv::Face::zlo, 0.0, pfv::Face::zhi, 0.0, pfv::Wall::symmetry),
+                 viscosity_one()};
+
+  Eigen::Matrix3Xd forces(const Eigen::Matrix3Xd& velocities) {
+    packing.velocities = velocities;
+    return flow.evaluate(packing.view()).total;
+  }
+};
+
+/// Speed after 2000 explicit steps of m dv/dt = F(v), over that at the start.
+double growth(Sample& sample, double dt) {
+  Random random(1);
+  Eigen::Matrix3Xd v(3, sample.masses.size());
+  for (int k = 0; k < v.cols(); ++k) v.col(k) = random.in_cube();
+  const double start = v.norm();
+  for (int step = 0; step < 2000 && v.norm() < 1e6 * start; ++step) {
+    const Eigen::Matrix3Xd f = sample.forces(v);
+    for (int k = 0; k < v.cols(); ++k) v.col(k) += dt / sample.masses[k] * f.col(k);
+  }
+  return v.norm() / start;
+}
+
+TEST(TimeStepLimit, SeparatesDecayFromGrowth) {
+  Sample sample;
+  sample.forces(Eigen::Matrix3Xd::Zero(3, sample.masses.size()));
+  const double limit = sample.flow.time_step_limit(sample.masses);
+  EXPECT_LT(growth(sample, 0.95 * limit), 1.0);
+  EXPECT_GT(growth(sample, 1.2 * limit), 1e5);
+}
+
+// The whole operator, column by column, and its eigenvalues.
+TEST(TimeStepLimit, IsThatOfTheOperatorsLargestEigenvalueFromBelow) {
+  Sample sample;
+  const auto n = static_cast<int>(sample.masses.size());
+  Eigen::MatrixXd drag(3 * n, 3 * n);
+  for (int c = 0; c < 3 * n; ++c) {
+    Eigen::Matrix3Xd v = Eigen::Matrix3Xd::Zero(3, n);
+    v(c % 3, c / 3) = 1.0;
+    Eigen::Matrix3Xd a = -sample.forces(v);
+    for (int k = 0; k < n; ++k) a.col(k) /= sample.masses[k];
+    drag.col(c) = a.reshaped();
+  }
+  const double largest = drag.eigenvalues().cwiseAbs().maxCoeff();
+  const double limit = sample.flow.time_step_limit(sample.masses);
+  EXPECT_LT(limit * largest / 2.0, 1.0);
+  EXPECT_GT(limit * largest / 2.0, 0.9);
+}
+
+TEST(TimeStepLimit, GoesWithTheMassesAndWithOneOverTheViscosity) {
+  Sample sample;
+  sample.forces(Eigen::Matrix3Xd::Zero(3, sample.masses.size()));
+  const double limit = sample.flow.time_step_limit(sample.masses);
+  EXPECT_EQ(sample.flow.time_step_limit(sample.masses), limit);
+  EXPECT_NEAR(sample.flow.time_step_limit(4.0 * sample.masses) / limit, 4.0, 1e-12);
+  pfv::Fluid thick = viscosity_one();
+  thick.viscosity = 8.0;
+  pfv::Flow flow(sample.flow.box(), thick);
+  flow.evaluate(sample.packing.view());
+  EXPECT_NEAR(flow.time_step_limit(sample.masses) * 8.0 / limit, 1.0, 1e-12);
+}
+
+TEST(TimeStepLimit, IsInfiniteWhereNothingIsUnknown) {
+  pfv::Box box;
+  for (const pfv::Face face : pfv::all_faces) box[face].boundary = pfv::Boundary::pressure(0.0);
+  pfv::Flow flow(box, viscosity_one());
+  const auto packing = packing_of({{0.5, 0.5, 0.5, 0.2}});
+  flow.evaluate(packing.view());
+  EXPECT_EQ(flow.time_step_limit(Eigen::VectorXd::Ones(1)),
+            std::numeric_limits<double>::infinity());
+}
+
+TEST(TimeStepLimit, LeavesTheResultsOfTheLastCallAlone) {
+  Sample sample;
+  const Eigen::Matrix3Xd before = sample.forces(-sample.packing.positions);
+  sample.flow.time_step_limit(sample.masses);
+  EXPECT_TRUE(sample.flow.forces().total == before);
+  EXPECT_EQ(sample.flow.report().mass_error, sample.flow.report().mass_error);
+}
+
+}  // namespace
