@@ -241,6 +241,20 @@ TEST_P(EverySolver, LeavesNoResidualOnFiveThousandPores) {
   EXPECT_LT(residual(matrix, solution(*solver_, matrix, b), b), 1e-12);
 }
 
+// One block of columns, from narrower than any unit of the solver's loops to several of them.
+TEST_P(EverySolver, TakesFullMatricesOfEachSize) {
+  for (int n = 1; n <= 40; ++n) {
+    Rows rows(n);
+    for (int i = 0; i < n; ++i) {
+      rows[i][i] += 1.0;
+      for (int j = 0; j < i; ++j) connect(rows, i, j, 1.0 / (1.0 + i + 2.0 * j));
+    }
+    const SymmetricMatrix matrix = compressed(rows);
+    const Eigen::VectorXd b = right_side(n);
+    EXPECT_LT(residual(matrix, solution(*solver_, matrix, b), b), 1e-14) << n << " unknowns";
+  }
+}
+
 TEST_P(EverySolver, KeepsItsFactorForFurtherRightHandSides) {
   const SymmetricMatrix matrix = lattice(8);
   const Eigen::VectorXd b = right_side(matrix.size());

@@ -3,8 +3,10 @@
 
 #include "pfv/error.hpp"
 
+#include <cstdlib>
 #include <omp.h>
 #include <string>
+#include <sys/mman.h>
 
 namespace pfv {
 namespace {
@@ -43,16 +45,6 @@ cholmod_sparse as_cholmod(const SymmetricRows& matrix) {
   return view;
 }
 
-cholmod_dense as_cholmod(double* values, std::size_t size) {
-  cholmod_dense view{};
-  view.nrow = view.nzmax = view.d = size;
-  view.ncol = 1;
-  view.x = values;
-  view.xtype = CHOLMOD_REAL;
-  view.dtype = CHOLMOD_DOUBLE;
-  return view;
-}
-
 double diagonal_entry(const SymmetricRows& matrix, int row) {
   for (int k = matrix.row_begin[row]; k < matrix.row_begin[row + 1]; ++k) {
     if (matrix.column[k] == row) return matrix.value[k];
@@ -70,11 +62,15 @@ CholmodFactor::CholmodFactor() {
   common_.postorder = 1;
   common_.supernodal = CHOLMOD_SUPERNODAL;
   common_.quick_return_if_not_posdef = 1;
+  // Small supernodes merge where less than these parts of the result are zeros: less than CHOLMOD's
+  // own (0.8, 0.1, 0.05), because solves read the zeros too. Measured at 20000 spheres: 6 % less to
+  // read, the factorisation as fast.
+  common_.zrelax[0] = 0.5;
+  common_.zrelax[1] = 0.05;
+  common_.zrelax[2] = 0.02;
 }
 
 CholmodFactor::~CholmodFactor() {
-  cholmod_free_dense(&supernode_workspace_, &common_);
-  cholmod_free_dense(&permuted_workspace_, &common_);
   cholmod_free_factor(&factor_, &common_);
   cholmod_finish(&common_);
 }
@@ -85,10 +81,28 @@ void CholmodFactor::analyze(const SymmetricRows& matrix, const std::vector<int>&
   common_.method[0].ordering = permutation.empty() ? CHOLMOD_AMD : CHOLMOD_GIVEN;
   factor_ = cholmod_analyze_p(&view, const_cast<int*>(permutation.data()), nullptr, 0, &common_);
   require_success("symbolic factorisation");
+  solve_.analyze(*factor_);
+}
+
+// CHOLMOD takes values that are there already, and frees them with the factor. In huge pages the
+// solves are a fifth faster at 20000 spheres.
+void CholmodFactor::allocate_values() {
+  if (factor_->x) return;
+  constexpr std::size_t huge_page = std::size_t{1} << 21;
+  const std::size_t bytes = (factor_->xsize + SupernodalSolve::margin) * sizeof(double);
+  const std::size_t alignment = bytes < 2 * huge_page ? 64 : huge_page;
+  const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+  factor_->x = std::aligned_alloc(alignment, whole);
+  if (!factor_->x) throw_out_of_memory("numeric factorisation");
+  factor_->xtype = CHOLMOD_REAL;
+#ifdef MADV_HUGEPAGE
+  if (alignment == huge_page) madvise(factor_->x, whole, MADV_HUGEPAGE);
+#endif
 }
 
 void CholmodFactor::factorize(const SymmetricRows& matrix) {
   const OneThread one_thread;
+  allocate_values();
   cholmod_sparse view = as_cholmod(matrix);
   cholmod_factorize(&view, factor_, &common_);
   if (common_.status == CHOLMOD_NOT_POSDEF) {
@@ -96,32 +110,27 @@ void CholmodFactor::factorize(const SymmetricRows& matrix) {
   }
   require_success("numeric factorisation");
   require_positive_pivots(matrix);
-}
-
-void CholmodFactor::solve(const double* b, double* x) {
-  cholmod_dense right_side = as_cholmod(const_cast<double*>(b), factor_->n);
-  cholmod_dense solution = as_cholmod(x, factor_->n);
-  cholmod_dense* target = &solution;  // of the size that CHOLMOD wants: it writes straight into x
-  cholmod_solve2(CHOLMOD_A, factor_, &right_side, nullptr, &target, nullptr, &permuted_workspace_,
-                 &supernode_workspace_, &common_);
-  require_success("solve");
+  solve_.pack(*factor_);
 }
 
 void CholmodFactor::require_success(const char* phase) const {
   if (common_.status == CHOLMOD_OK) return;
+  if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw_out_of_memory(phase);
   const std::string what = std::string("cholmod: ") + phase;
-  if (common_.status == CHOLMOD_OUT_OF_MEMORY) {
-    const std::string need =
-        factor_ ? " (the factor takes " + std::to_string(entries() * sizeof(double) >> 20) + " MiB)"
-                : "";
-    throw SolverError(what + " ran out of memory" + need +
-                      "; use fewer spheres, more memory, or metis where the ordering is amd");
-  }
   if (common_.status == CHOLMOD_TOO_LARGE) {
     throw SolverError(what + ": the factor has more entries than a 32-bit integer counts; use "
                       "fewer spheres, or metis where the ordering is amd");
   }
   throw SolverError(what + " failed with status " + std::to_string(common_.status));
+}
+
+void CholmodFactor::throw_out_of_memory(const char* phase) const {
+  const std::string need =
+      factor_ ? " (the factor takes " + std::to_string(factor_->xsize * sizeof(double) >> 20) +
+                    " MiB)"
+              : "";
+  throw SolverError(std::string("cholmod: ") + phase + " ran out of memory" + need +
+                    "; use fewer spheres, more memory, or metis where the ordering is amd");
 }
 
 // L is stored by supernodes: columns super[s] ... super[s + 1] share the pi[s + 1] - pi[s] rows of

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "solve/supernodal_solve.hpp"
+
 #include <cholmod.h>
 #include <cstddef>
 #include <vector>
@@ -15,7 +17,7 @@ struct SymmetricRows {
   const double* value = nullptr;  ///< may be null where only the pattern is wanted
 };
 
-/// The supernodal factorisation P A P^T = L L^T of CHOLMOD and its workspace.
+/// The supernodal factorisation P A P^T = L L^T of CHOLMOD, and solves with it.
 /// Silent; every failure is a SolverError.
 class CholmodFactor {
  public:
@@ -30,20 +32,21 @@ class CholmodFactor {
   /// L for the values of a matrix with the analysed pattern. Throws where the matrix is not
   /// positive definite, or so nearly singular that rounding has used up every digit of a pivot.
   void factorize(const SymmetricRows& matrix);
-  /// x = A^-1 b. The workspace is kept from call to call.
-  void solve(const double* b, double* x);
+  /// x = A^-1 b.
+  void solve(const double* b, double* x) { solve_.solve(b, x); }
   /// Stored entries of the analysed L, with the zeros that relaxed supernodes take in.
-  std::size_t entries() const { return factor_->xsize; }
+  std::size_t entries() const { return solve_.entries(); }
 
  private:
+  void allocate_values();
   void require_success(const char* phase) const;
+  [[noreturn]] void throw_out_of_memory(const char* phase) const;
   void require_positive_pivots(const SymmetricRows& matrix) const;
   [[noreturn]] void throw_not_positive_definite(int row) const;
 
   mutable cholmod_common common_;
   cholmod_factor* factor_ = nullptr;
-  cholmod_dense* permuted_workspace_ = nullptr;
-  cholmod_dense* supernode_workspace_ = nullptr;
+  SupernodalSolve solve_;
 };
 
 }  // namespace pfv

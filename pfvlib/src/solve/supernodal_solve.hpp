@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cholmod.h>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pfv {
+
+/// Neighbouring columns of L that share the rows below their triangle. Its values, one after the
+/// other: the reciprocal pivots; the rest of the triangle by columns; the rows below it in blocks of
+/// `block_rows` (the last one may have fewer), each block by columns.
+struct Panel {
+  int first_column;
+  int columns;               ///< at most `panel_width`
+  int rows;                  ///< below the triangle
+  std::int64_t first_row;    ///< in the list of row numbers
+  std::int64_t first_value;  ///< in the list of values
+};
+
+/// As many accumulators as the 16 vector registers of AVX2 leave room for.
+constexpr int panel_width = 8;
+constexpr int block_rows = 4;
+
+/// Forward and backward substitution with the supernodal L of CHOLMOD, packed so that both stream
+/// through it. CHOLMOD's own solve calls the BLAS for each supernode, too small for that to pay, and
+/// reads the unused upper half of each diagonal block.
+class SupernodalSolve {
+ public:
+  /// How many values beyond CHOLMOD's the array of L must have room for: a block that is not full
+  /// is read as if it were.
+  static constexpr std::size_t margin = block_rows;
+
+  /// Cuts the supernodes of a symbolic factor into panels. It must outlive this.
+  void analyze(const cholmod_factor& factor);
+  /// Packs the values of the analysed factor, which are those of CHOLMOD's layout, where they lie:
+  /// they are L for `solve` alone until the next factorisation.
+  void pack(cholmod_factor& factor);
+  /// x = P^T L^-T L^-1 P b.
+  void solve(const double* b, double* x);
+  /// Entries of L that a solve reads twice.
+  std::size_t entries() const { return entries_; }
+
+ private:
+  std::vector<Panel> panels_;
+  std::size_t entries_ = 0;
+  const int* permutation_ = nullptr;
+  const int* rows_ = nullptr;
+  const double* values_ = nullptr;
+  std::vector<double> permuted_;
+  std::vector<double> columns_;  ///< of the panel that is being packed
+};
+
+}  // namespace pfv
