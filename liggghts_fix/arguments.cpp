@@ -70,6 +70,14 @@ class Words {
     return text == "yes";
   }
 
+  PfvCoupling coupling() {
+    const std::string text = word("the coupling");
+    if (text == "explicit") return PfvCoupling::explicit_forces;
+    if (text == "staged") return PfvCoupling::staged;
+    if (text == "auto") return PfvCoupling::automatic;
+    fail("there are explicit, staged and auto, not '" + text + "'");
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw pfv::InputError("keyword '" + keyword_ + "': " + what);
   }
@@ -195,6 +203,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "retriangulate")
     settings.options.retriangulation_strain = words.number("the strain");
   else if (keyword == "couple_every") settings.couple_every = words.count("the number of steps");
+  else if (keyword == "coupling") settings.coupling = words.coupling();
+  else if (keyword == "time_step_check") settings.time_step_check = words.yes_or_no();
   else if (keyword == "conductance")
     settings.options.conductance = pfv::conductance_law_named(words.word("the law's name"));
   else if (keyword == "solver")
@@ -204,8 +214,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else
     throw pfv::InputError("unknown keyword '" + keyword +
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
-                          "pressure_profile, retriangulate, couple_every, conductance, solver, "
-                          "output and profile");
+                          "pressure_profile, retriangulate, couple_every, coupling, "
+                          "time_step_check, conductance, solver, output and profile");
 }
 
 /// A profile makes its face one of imposed pressure, which a face with another boundary is not.
@@ -260,13 +270,16 @@ int modify_pfv(PfvSettings& settings, int narg, char** arg) {
   else if (keyword == "retriangulate")
     changed.options.retriangulation_strain = words.number("the strain");
   else if (keyword == "couple_every") changed.couple_every = words.count("the number of steps");
-  else if (keyword == "pressure") set_boundary(Kind::pressure, "the pressure");
+  else if (keyword == "safety") {
+    changed.safety = words.number("the safety factor");
+    if (changed.safety <= 0.0) words.fail("the safety factor must be > 0");
+  } else if (keyword == "pressure") set_boundary(Kind::pressure, "the pressure");
   else if (keyword == "flux") set_boundary(Kind::flux, "the flux");
   else if (keyword == "sealed") set_boundary(Kind::sealed, "");
   else
     throw pfv::InputError("fix_modify knows no keyword '" + keyword +
-                          "'; there are viscosity, retriangulate, couple_every, pressure, flux and "
-                          "sealed");
+                          "'; there are viscosity, retriangulate, couple_every, safety, pressure, "
+                          "flux and sealed");
   pfv::check(changed.fluid);
   pfv::check(changed.options);
   settings = changed;

@@ -58,12 +58,21 @@ struct PfvFieldOutput {
   std::string path;  ///< ends in .pvd
 };
 
+enum class PfvCoupling {
+  explicit_forces,  ///< of the velocities at the beginning of the step
+  staged,           ///< the drag is integrated over the step
+  automatic         ///< staged for a network whose explicit limit is below the step
+};
+
 struct PfvSettings {
   pfv::Fluid fluid;  ///< gravity is set later, from `fix gravity`
   pfv::Options options;
   std::array<PfvFace, 6> faces;
   std::vector<PfvPatch> patches;
   int couple_every = 1;
+  PfvCoupling coupling = PfvCoupling::explicit_forces;
+  bool time_step_check = true;
+  double safety = 1.0;  ///< part of the explicit limit that a step may reach
   std::optional<PfvFieldOutput> fields;
   std::optional<PfvProfileOutput> profile;
 };

@@ -32,7 +32,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
 
   scalar_flag = vector_flag = 1;
-  size_vector = 8;
+  size_vector = 9;
   extscalar = extvector = 0;
   global_freq = 1;
   peratom_flag = 1;
@@ -62,6 +62,7 @@ void FixPfv::init() {
     error->fix_error(FLERR, this, "needs run_style verlet");
   check_variables();
   check_other_fixes();
+  bind_coupling();
   everywhere([&] { faces_.bind(settings_.faces); });
   array_atom = per_atom_->array_atom;
   // computes behind variables have to be ready for the setup's evaluation
@@ -123,7 +124,8 @@ void FixPfv::check_other_fixes() {
     const Fix* other = modify->fix[i];
     gravity |= dynamic_cast<const FixGravity*>(other) != nullptr;
     buoyancy |= dynamic_cast<const FixBuoyancy*>(other) != nullptr;
-    if (other != this && std::strcmp(other->style, style) == 0 && shares_grains_with(*other)) {
+    if (other != this && std::strcmp(other->style, style) == 0 &&
+        PfvOtherFixes(lmp, *this).share_grains_with(*other)) {
       const std::string message = std::string("shares grains with fix pfv '") + other->id +
                                   "'; two flows need groups without a common grain";
       error->fix_error(FLERR, this, message.c_str());
@@ -132,15 +134,6 @@ void FixPfv::check_other_fixes() {
   if (gravity && buoyancy && settings_.options.buoyancy)
     error->fix_error(FLERR, this,
                      "counts buoyancy twice with `fix buoyancy`; remove that or set `buoyancy no`");
-}
-
-bool FixPfv::shares_grains_with(const Fix& other) const {
-  if (other.igroup == igroup) return true;
-  int common = 0;
-  for (int i = 0; i < atom->nlocal && !common; ++i)
-    common = (atom->mask[i] & groupbit) && (atom->mask[i] & other.groupbit);
-  MPI_Allreduce(MPI_IN_PLACE, &common, 1, MPI_INT, MPI_MAX, world);
-  return common != 0;
 }
 
 // -------------------------------------------------------------------------------------- boundaries
@@ -193,7 +186,7 @@ pfv::Box FixPfv::current_box() {
 
 /// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
-  grains_.gather(groupbit);
+  grains_.gather(groups_, may_stage());
   everywhere([&] { faces_.read(); });
 }
 
@@ -217,7 +210,7 @@ void FixPfv::prepare_flow(const pfv::Box& box) {
   if (flow_) {
     flow_->set_box(box);
     flow_->rebuild();
-    flow_->evaluate(grains_.packing(), settings_.couple_every * update->dt);
+    flow_->evaluate(grains_.packing(), flow_step());
     restored_ = flow_->state();
   }
   flow_ = std::make_unique<pfv::Flow>(box, settings_.fluid, settings_.options);
@@ -246,8 +239,12 @@ void FixPfv::setup(int) {
   on_root([&] {
     place_faces(box_);
     prepare_flow(box_);
-    flow_->evaluate(grains_.packing(), settings_.couple_every * update->dt);
+    flow_->evaluate(grains_.packing(), flow_step());
+    choose_coupling();
+    if (staged_)
+      flow_->evaluate_staged(grains_.packing(), flow_step(), grains_.dynamics());
     if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
+    check_time_step();
   });
   after_flow_call();
   apply_forces();
@@ -279,7 +276,7 @@ void FixPfv::advance() {
     place_faces(box_);
     if (mean) grains_.use_mean_velocities(last_grains_, elapsed_);
     flow_->set_box(box_);
-    flow_->step(grains_.packing(), elapsed_);
+    step_flow();
     if (mean) last_grains_ = grains_.snapshot();
   });
   elapsed_ = 0.0;
@@ -337,7 +334,7 @@ void FixPfv::write_restart(FILE* file) {
       place_faces(box_);
       flow_->set_box(box_);
       flow_->rebuild();
-      flow_->evaluate(grains_.packing(), settings_.couple_every * update->dt);
+      flow_->evaluate(grains_.packing(), flow_step());
       record.flow = flow_->state();
       report_.reset();
     } else if (restored_) {

@@ -12,6 +12,7 @@ FixStyle(pfv,FixPfv)
 #include "arguments.h"
 #include "face_sources.h"
 #include "grain_exchange.h"
+#include "other_fixes.h"
 #include "restart_record.h"
 #include "result_files.h"
 
@@ -58,7 +59,6 @@ class FixPfv : public Fix {
   void check_environment();
   void check_variables();
   void check_other_fixes();
-  bool shares_grains_with(const Fix& other) const;
 
   // one flow call
   pfv::Box current_box();
@@ -75,6 +75,15 @@ class FixPfv : public Fix {
   void apply_forces();
   void push_meshes();
 
+  // time step and coupling
+  void bind_coupling();
+  bool may_stage() const;
+  double flow_step() const;  ///< s, between two flow steps of a run
+  void choose_coupling();
+  void step_flow();
+  double estimated_limit() const;
+  void check_time_step();
+
   // outputs
   double quantity(int n);
   const pfv::Report& report();
@@ -84,6 +93,8 @@ class FixPfv : public Fix {
   PfvSettings settings_;
   PfvFaceSources faces_;
   PfvGrainExchange grains_;
+  PfvGroups groups_;
+  std::string obstacle_;  // to staged coupling
   class FixPropertyAtom* per_atom_ = nullptr;
   pfv::Box box_;
 
@@ -98,6 +109,8 @@ class FixPfv : public Fix {
   std::optional<pfv::FlowState> restored_;
   std::optional<pfv::Report> report_;
   PfvSnapshot last_grains_;
+  bool staged_ = false;
+  std::int64_t chosen_for_ = 0;  // retriangulations when the coupling was chosen
   bool cited_ = false;
 };
 

@@ -30,6 +30,7 @@ double FixPfv::quantity(int n) {
     case 5: return flow_->time_step_limit(grains_.masses());
     case 6: return flow_->mean_pressure();
     case 7: return static_cast<double>(flow_->hidden_or_outside());
+    case 8: return static_cast<double>(flow_->stages());
     default: return flow_->strain();
   }
 }

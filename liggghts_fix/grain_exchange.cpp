@@ -6,13 +6,14 @@
 
 #include <mpi.h>
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace LAMMPS_NS {
 
 namespace {
 
-constexpr int sent_width = 9;      // tag, place, velocity, radius, mass
+constexpr int plain_width = 9;     // tag, place, velocity, radius, mass
 constexpr int returned_width = 4;  // force, pressure
 
 std::vector<int> times(const std::vector<int>& counts, int width) {
@@ -23,34 +24,39 @@ std::vector<int> times(const std::vector<int>& counts, int width) {
 
 }  // namespace
 
-void PfvGrainExchange::gather(int groupbit) {
-  groupbit_ = groupbit;
+void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces) {
+  constexpr double immovable = std::numeric_limits<double>::infinity();
+  groupbit_ = groups.flow;
+  sent_width_ = with_forces ? plain_width + 3 : plain_width;
   local_.clear();
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & groupbit)) continue;
+    const int mask = atom->mask[i];
+    if (!(mask & groupbit_)) continue;
     const double *x = atom->x[i], *v = atom->v[i];
     local_.insert(local_.end(), {static_cast<double>(atom->tag[i]), x[0], x[1], x[2], v[0], v[1],
-                                 v[2], atom->radius[i], atom->rmass[i]});
+                                 v[2], atom->radius[i],
+                                 groups.free(mask) ? atom->rmass[i] : immovable});
+    if (with_forces) local_.insert(local_.end(), atom->f[i], atom->f[i] + 3);
   }
-  local_count_ = static_cast<int>(local_.size()) / sent_width;
+  local_count_ = static_cast<int>(local_.size()) / sent_width_;
 
   counts_.resize(comm->nprocs);
   offsets_.resize(comm->nprocs);
   MPI_Gather(&local_count_, 1, MPI_INT, counts_.data(), 1, MPI_INT, 0, world);
   if (comm->me == 0) {
     std::exclusive_scan(counts_.begin(), counts_.end(), offsets_.begin(), 0);
-    received_.resize(std::size_t(sent_width) * (offsets_.back() + counts_.back()));
+    received_.resize(std::size_t(sent_width_) * (offsets_.back() + counts_.back()));
   }
-  MPI_Gatherv(local_.data(), sent_width * local_count_, MPI_DOUBLE, received_.data(),
-              times(counts_, sent_width).data(), times(offsets_, sent_width).data(), MPI_DOUBLE, 0,
+  MPI_Gatherv(local_.data(), sent_width_ * local_count_, MPI_DOUBLE, received_.data(),
+              times(counts_, sent_width_).data(), times(offsets_, sent_width_).data(), MPI_DOUBLE, 0,
               world);
   if (comm->me == 0) sort_by_tag();
 }
 
 void PfvGrainExchange::sort_by_tag() {
-  const int count = static_cast<int>(received_.size()) / sent_width;
+  const int count = static_cast<int>(received_.size()) / sent_width_;
   const auto by_tag = [this](int a, int b) {
-    return received_[std::size_t(sent_width) * a] < received_[std::size_t(sent_width) * b];
+    return received_[std::size_t(sent_width_) * a] < received_[std::size_t(sent_width_) * b];
   };
   // atoms change their places in LIGGGHTS' arrays seldom: the last order mostly still holds
   if (static_cast<int>(order_.size()) != count) {
@@ -65,13 +71,15 @@ void PfvGrainExchange::sort_by_tag() {
   grains_.velocities.resize(3, count);
   grains_.radii.resize(count);
   masses_.resize(count);
+  forces_.resize(3, sent_width_ > plain_width ? count : 0);
   for (int k = 0; k < count; ++k) {
-    const double* row = &received_[std::size_t(sent_width) * order_[k]];
+    const double* row = &received_[std::size_t(sent_width_) * order_[k]];
     grains_.ids[k] = static_cast<std::int64_t>(row[0]);
     grains_.positions.col(k) << row[1], row[2], row[3];
     grains_.velocities.col(k) << row[4], row[5], row[6];
     grains_.radii[k] = row[7];
     masses_[k] = row[8];
+    if (forces_.cols() > 0) forces_.col(k) << row[9], row[10], row[11];
   }
 }
 

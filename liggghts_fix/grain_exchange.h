@@ -3,6 +3,8 @@
 #ifndef LMP_PFV_GRAIN_EXCHANGE_H
 #define LMP_PFV_GRAIN_EXCHANGE_H
 
+#include "other_fixes.h"
+
 #include "pfv/flow.hpp"
 #include "pfv/packing.hpp"
 
@@ -22,17 +24,22 @@ class PfvGrainExchange : protected Pointers {
  public:
   explicit PfvGrainExchange(class LAMMPS* lmp) : Pointers(lmp) {}
 
-  /// Collects tag, place, velocity, radius and mass of the group's grains on rank 0; collective.
-  /// They are sorted by tag there, so that the flow sees the same packing however LIGGGHTS has
-  /// spread and sorted its atoms.
-  void gather(int groupbit);
+  /// Collects tag, place, velocity, radius and mass of the flow's grains on rank 0, on demand with
+  /// the force that acts on them so far; collective. They are sorted by tag there, so that the flow
+  /// sees the same packing however LIGGGHTS has spread and sorted its atoms.
+  void gather(const PfvGroups& groups, bool with_forces);
 
   /// Replaces the velocities by mean ones since `then`, `elapsed` seconds ago; rank 0. Grains that
   /// were not there then keep their own.
   void use_mean_velocities(const PfvSnapshot& then, double elapsed);
 
   pfv::Packing packing() const { return grains_.view(); }    ///< as gathered; rank 0
-  const Eigen::VectorXd& masses() const { return masses_; }  ///< kg; rank 0
+  /// kg, infinite for a grain that no force moves; rank 0.
+  const Eigen::VectorXd& masses() const { return masses_; }
+  /// Masses and forces of the last gathering with forces; rank 0.
+  pfv::GrainDynamics dynamics() const {
+    return {{masses_.data(), masses_.size()}, {forces_.data(), 3, forces_.cols()}};
+  }
   PfvSnapshot snapshot() const;                              ///< rank 0
 
   /// Hands force (columns 0-2, N) and pressure (3, Pa) to the atoms as they were gathered and zeros
@@ -45,6 +52,7 @@ class PfvGrainExchange : protected Pointers {
   void sort_by_tag();
 
   int groupbit_ = 0;
+  int sent_width_ = 0;  // numbers a grain
   int local_count_ = 0;
   std::vector<double> local_, received_;
   std::vector<int> counts_, offsets_;  // grains of each rank
@@ -52,6 +60,7 @@ class PfvGrainExchange : protected Pointers {
 
   pfv::PackingArrays grains_;
   Eigen::VectorXd masses_;
+  Eigen::Matrix3Xd forces_;
 };
 
 }  // namespace LAMMPS_NS

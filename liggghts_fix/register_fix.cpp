@@ -4,6 +4,7 @@
 // definition stands before the one of libliggghts in the lookup order, enters the style, and calls
 // the original.
 #include "fix_pfv.h"
+#include "private_member.h"
 
 #include "modify.h"
 
@@ -15,22 +16,14 @@
 
 using namespace LAMMPS_NS;
 
+using PfvFixCreator = Fix* (*)(LAMMPS*, int, char**);
+using PfvFixMap = std::map<std::string, PfvFixCreator>;
+
+namespace LAMMPS_NS {
+PFV_PRIVATE_MEMBER(PfvFixMapOf, PfvFixMap*, Modify, fix_map)
+}
+
 namespace {
-
-using FixCreator = Fix* (*)(LAMMPS*, int, char**);
-using FixMap = std::map<std::string, FixCreator>;
-
-// Modify::fix_map is private. Access is not checked for the arguments of an explicit instantiation
-// ([temp.spec]), which makes this the one way to reach it that the language allows.
-struct FixMapTag {
-  using Member = FixMap* Modify::*;
-  friend Member member(FixMapTag);
-};
-template <typename Tag, typename Tag::Member Pointer>
-struct Expose {
-  friend typename Tag::Member member(Tag) { return Pointer; }
-};
-template struct Expose<FixMapTag, &Modify::fix_map>;
 
 Fix* create_pfv(LAMMPS* lmp, int narg, char** arg) { return new FixPfv(lmp, narg, arg); }
 
@@ -51,6 +44,6 @@ AddFix original_add_fix() {
 
 __attribute__((visibility("default"))) void Modify::add_fix(int narg, char** arg, char* suffix) {
   static const AddFix original = original_add_fix();
-  (*(this->*member(FixMapTag())))["pfv"] = &create_pfv;
+  (*(this->*member(PfvFixMapOf())))["pfv"] = &create_pfv;
   original(this, narg, arg, suffix);
 }

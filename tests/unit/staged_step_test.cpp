@@ -126,6 +126,18 @@ TEST(StagedStep, BelowTheLimitItIsThePlainStep) {
   EXPECT_EQ(staged.flow.stages(), 1);
 }
 
+TEST(StagedStep, EvaluatingItAdvancesNothing) {
+  Braked run;
+  const double dt = 50.0 * run.limit();
+  const Eigen::Matrix3Xd evaluated =
+      run.flow.evaluate_staged(run.packing.view(), dt, run.dynamics()).total;
+  EXPECT_GT(run.flow.stages(), 1);
+  EXPECT_EQ(run.flow.time(), 0.0);
+  EXPECT_EQ(run.flow.strain(), 0.0);
+  EXPECT_EQ(run.flow.step_staged(run.packing.view(), dt, run.dynamics()).total, evaluated);
+  EXPECT_EQ(run.flow.time(), dt);
+}
+
 TEST(StagedStep, ForcesAndVolumesOfTheStepBalance) {
   Braked run;
   run.flow.step_staged(run.packing.view(), 50.0 * run.limit(), run.dynamics());

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "other_fixes.h"
+
+#include "private_member.h"
+
+#include "atom.h"
+#include "fix.h"
+#include "fix_setforce.h"
+#include "modify.h"
+
+#include <mpi.h>
+#include <algorithm>
+#include <array>
+
+namespace LAMMPS_NS {
+
+PFV_PRIVATE_MEMBER(PfvStyleX, int, FixSetForce, xstyle)
+PFV_PRIVATE_MEMBER(PfvStyleY, int, FixSetForce, ystyle)
+PFV_PRIVATE_MEMBER(PfvStyleZ, int, FixSetForce, zstyle)
+PFV_PRIVATE_MEMBER(PfvVariableX, char*, FixSetForce, xstr)
+PFV_PRIVATE_MEMBER(PfvVariableY, char*, FixSetForce, ystr)
+PFV_PRIVATE_MEMBER(PfvVariableZ, char*, FixSetForce, zstr)
+PFV_PRIVATE_MEMBER(PfvRegion, int, FixSetForce, iregion)
+
+namespace {
+
+std::string style_of(const Fix& fix) { return fix.style; }
+
+/// Whether the fix sets all three components of the force of all its grains. The style of a variable
+/// is not known before that fix's own init.
+bool overwrites_forces(const Fix& fix) {
+  if (style_of(fix) == "freeze") return true;
+  const auto* set = dynamic_cast<const FixSetForce*>(&fix);
+  if (!set || set->*member(PfvRegion()) >= 0) return false;
+  return (set->*member(PfvVariableX()) || set->*member(PfvStyleX())) &&
+         (set->*member(PfvVariableY()) || set->*member(PfvStyleY())) &&
+         (set->*member(PfvVariableZ()) || set->*member(PfvStyleZ()));
+}
+
+bool prescribes_velocities(const Fix& fix) {
+  return style_of(fix) == "move" || style_of(fix) == "nve/noforce";
+}
+
+/// Those that have a POST_FORCE but read forces only, or change something else.
+bool leaves_forces_alone(const Fix& fix) {
+  static const std::array<const char*, 4> styles{"pfv", "store/force", "heat/gran",
+                                                 "heat/gran/conduction"};
+  return std::find(styles.begin(), styles.end(), style_of(fix)) != styles.end();
+}
+
+std::string name_of(const Fix& fix) { return "fix " + style_of(fix) + " '" + fix.id + "'"; }
+
+}  // namespace
+
+PfvGroups PfvOtherFixes::groups() const {
+  PfvGroups groups;
+  groups.flow = flow_.groupbit;
+  bool later = false;
+  for (int i = 0; i < modify->nfix; ++i) {
+    const Fix& other = *modify->fix[i];
+    if (&other == &flow_) {
+      later = true;
+    } else if (prescribes_velocities(other) || (later && overwrites_forces(other))) {
+      groups.held |= other.groupbit;
+    } else if (other.time_integrate) {
+      groups.moved |= other.groupbit;
+    }
+  }
+  return groups;
+}
+
+std::string PfvOtherFixes::obstacle_to_stages() const {
+  bool later = false;
+  for (int i = 0; i < modify->nfix; ++i) {
+    const Fix& other = *modify->fix[i];
+    if (&other == &flow_) {
+      later = true;
+      continue;
+    }
+    const bool acts = modify->fmask[i] & FixConst::POST_FORCE;
+    const bool frozen_before = !later && style_of(other) == "freeze";
+    const bool adds_later =
+        later && acts && !overwrites_forces(other) && !leaves_forces_alone(other);
+    if (!other.rigid_flag && !frozen_before && !adds_later) continue;
+    if (!share_grains_with(other)) continue;
+    if (other.rigid_flag)
+      return name_of(other) + " moves grains as rigid bodies, which staged coupling cannot; use "
+                              "`coupling explicit`";
+    if (frozen_before)
+      return name_of(other) + " stands before this fix, so that the fluid would move its grains; "
+                              "define it after this fix";
+    return name_of(other) + " adds forces after this fix, which staged coupling would not know of; "
+                            "define this fix after it, as the last one that adds forces";
+  }
+  return {};
+}
+
+bool PfvOtherFixes::share_grains_with(const Fix& other) const {
+  if (other.igroup == flow_.igroup) return true;
+  int common = 0;
+  for (int i = 0; i < atom->nlocal && !common; ++i)
+    common = (atom->mask[i] & flow_.groupbit) && (atom->mask[i] & other.groupbit);
+  MPI_Allreduce(MPI_IN_PLACE, &common, 1, MPI_INT, MPI_MAX, world);
+  return common != 0;
+}
+
+}  // namespace LAMMPS_NS

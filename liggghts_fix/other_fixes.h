@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What other fixes do to the grains of a flow: who moves them, who holds them, who adds forces.
+#ifndef LMP_PFV_OTHER_FIXES_H
+#define LMP_PFV_OTHER_FIXES_H
+
+#include "pointers.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+/// Grains by the bits of their groups.
+struct PfvGroups {
+  int flow = 0;   ///< the grains of the flow
+  int moved = 0;  ///< those that a fix integrates with the forces on them
+  int held = 0;   ///< those whose force is overwritten, or whose velocity is prescribed, all the same
+
+  /// Whether a force of the fluid changes the velocity of a grain with this mask.
+  bool free(int mask) const { return (mask & moved) && !(mask & held); }
+};
+
+class PfvOtherFixes : protected Pointers {
+ public:
+  PfvOtherFixes(class LAMMPS* lmp, const class Fix& flow) : Pointers(lmp), flow_(flow) {}
+
+  PfvGroups groups() const;
+
+  /// Why the flow cannot be staged among these fixes, with what to do about it; empty where it can.
+  /// A staged step has to know each force that acts beside the fluid's over the step. Collective.
+  std::string obstacle_to_stages() const;
+
+  bool share_grains_with(const class Fix& other) const;  ///< collective
+
+ private:
+  const class Fix& flow_;
+};
+
+}  // namespace LAMMPS_NS
+
+#endif
