@@ -93,7 +93,7 @@ def draw_samples(runs):
 
 def study():
     FIGURES.mkdir(parents=True, exist_ok=True)
-    samples = [one_run(f"N{n}_{seed}", f"N={n}", f"SEED={seed}", f"SMALL={int(n < 1000)}")
+    samples = [one_run(f"N{n}_{seed}", f"N={n}", f"SEED={seed}")
                for n, seed in SAMPLES]
     samples.append(one_run("fixed", "BASE=fixed"))
     thresholds = []
