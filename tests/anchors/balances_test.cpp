@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mass and force balances on every packing of tests/data. The paper promises 1e-6 for the fluxes and
-// 1e-7 for the forces; a direct solver and exact geometry at the walls give round-off.
+// Mass and force balances on every packing of tests/data. The paper promises 1e-6 for the fluxes
+// and 1e-7 for the forces; a direct solver and exact geometry at the walls give round-off.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
@@ -41,7 +41,7 @@ class Balances : public testing::TestWithParam<Case> {
 
 TEST_P(Balances, StillGrains) {
   const pfv::Box box = pressure_box(pfv::Face::zlo, p_ + 1.0, pfv::Face::zhi, p_, GetParam().wall);
-  pfv::Flow flow(box, viscosity_one());
+  pfv::Flow flow(box, viscosity_one(), hydraulic_radius());
   flow.evaluate(packing_.view());
   const pfv::Report report = flow.report();
   // round-off of p in the shortest throats, whose conductance is up to 1e7 times the smallest one:
@@ -63,7 +63,7 @@ TEST_P(Balances, PistonDrainedThroughItself) {
   pfv::PackingArrays packing = packing_;
   packing.velocities = Eigen::Matrix3Xd::Zero(3, packing.positions.cols());
   packing.velocities.row(2) = -packing.positions.row(2);
-  pfv::Flow flow(box, viscosity_one());
+  pfv::Flow flow(box, viscosity_one(), hydraulic_radius());
   flow.evaluate(packing.view());
   const pfv::Report report = flow.report();
   EXPECT_NEAR(report.volume_rate_sum, -1.0, 1e-12);
@@ -89,7 +89,7 @@ TEST(CommonPressure, ChangesNoFlowAndNoForceOnASphere) {
   const auto solve = [&](double common) {
     pfv::Flow flow(pressure_box(pfv::Face::zlo, common + 1.0, pfv::Face::zhi, common,
                                 pfv::Wall::no_slip),
-                   viscosity_one());
+                   viscosity_one(), hydraulic_radius());
     const Eigen::Matrix3Xd forces = flow.evaluate(packing.view()).total;
     return std::make_pair(forces, *flow.report().permeability);
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cubic lattices: cospherical sets everywhere. Drag of touching and loosened lattices over the exact one
-// (Zick & Homsy 1982; finite elements for loosened ones, 0.2 %) as the conductance study recorded it.
+// Cubic lattices: cospherical sets everywhere. Drag of touching and loosened lattices over the
+// exact one (Zick & Homsy 1982; finite elements for loosened ones, 0.2 %) as the conductance study
+// recorded it.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
@@ -54,7 +55,7 @@ TEST(PeriodicLattices, LoosenedOnesHaveTheRecordedShareOfTheExactPermeability) {
 TEST(SimpleCubicBox, HasOnePoreACellAndTheExactPermeabilityLess2Percent) {
   for (const int n : {2, 4, 6}) {
     const pfv::PackingArrays packing = lattice(Lattice::sc, n);
-    pfv::Flow flow(upward_box(pfv::Wall::symmetry), viscosity_one());
+    pfv::Flow flow(upward_box(pfv::Wall::symmetry), viscosity_one(), hydraulic_radius());
     flow.evaluate(packing.view());
     const pfv::Report report = flow.report();
     EXPECT_EQ(report.pores, (n + 1) * (n + 1) * (n + 1));
@@ -68,7 +69,7 @@ TEST(SimpleCubicBox, HasOnePoreACellAndTheExactPermeabilityLess2Percent) {
 
 TEST(SimpleCubicBox, SharesTheForceEqually) {
   const pfv::PackingArrays packing = lattice(Lattice::sc, 4);
-  pfv::Flow flow(upward_box(pfv::Wall::symmetry), viscosity_one());
+  pfv::Flow flow(upward_box(pfv::Wall::symmetry), viscosity_one(), hydraulic_radius());
   const pfv::Forces& forces = flow.evaluate(packing.view());
   for (int k = 0; k < 64; ++k)
     EXPECT_LT((forces.total.col(k) - Eigen::Vector3d(0, 0, 1.0 / 64.0)).norm(), 1e-14);
@@ -96,8 +97,9 @@ std::vector<Operation> operations_that_keep_the_axis() {
   return operations;
 }
 
-/// Spheres that an operation maps onto each other carry forces that it maps onto each other. One that
-/// turns the flow round also turns the forces. Returns the number of operations of the packing.
+/// Spheres that an operation maps onto each other carry forces that it maps onto each other. One
+/// that turns the flow round also turns the forces. Returns the number of operations of the
+/// packing.
 int expect_symmetric_forces(const pfv::PackingArrays& packing, const Eigen::Matrix3Xd& forces) {
   const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5);
   int found = 0;
@@ -120,7 +122,7 @@ TEST(CubicLattices, GiveForcesWithTheirOwnSymmetry) {
     for (const double scale : {1.0, 0.97})
       for (const pfv::Wall wall : {pfv::Wall::no_slip, pfv::Wall::symmetry}) {
         const pfv::PackingArrays packing = lattice(kind, 4, scale);
-        pfv::Flow flow(upward_box(wall), viscosity_one());
+        pfv::Flow flow(upward_box(wall), viscosity_one(), hydraulic_radius());
         const pfv::Forces& forces = flow.evaluate(packing.view());
         EXPECT_TRUE(forces.total.allFinite());
         EXPECT_EQ(expect_symmetric_forces(packing, forces.total), operations);
@@ -139,8 +141,8 @@ pfv::PackingArrays jittered(pfv::PackingArrays packing, double amplitude) {
 TEST(CubicLattices, JitteredBy1em12HaveTheSamePermeability) {
   for (const Lattice kind : {Lattice::sc, Lattice::bcc, Lattice::fcc}) {
     const pfv::PackingArrays exact = lattice(kind, 5), moved = jittered(exact, 1e-12);
-    pfv::Flow a(upward_box(pfv::Wall::symmetry), viscosity_one());
-    pfv::Flow b(upward_box(pfv::Wall::symmetry), viscosity_one());
+    pfv::Flow a(upward_box(pfv::Wall::symmetry), viscosity_one(), hydraulic_radius());
+    pfv::Flow b(upward_box(pfv::Wall::symmetry), viscosity_one(), hydraulic_radius());
     a.evaluate(exact.view());
     b.evaluate(moved.view());
     EXPECT_EQ(a.report().pores, b.report().pores);
@@ -168,14 +170,14 @@ TEST(TurnedLattices, MergeAndBalanceLikeStraightOnes) {
   for (const Lattice kind : {Lattice::sc, Lattice::bcc, Lattice::fcc}) {
     const pfv::PackingArrays packing = turned(kind, 8);
     ASSERT_GT(packing.radii.size(), 50);
-    pfv::Flow exact(upward_box(pfv::Wall::no_slip), viscosity_one());
+    pfv::Flow exact(upward_box(pfv::Wall::no_slip), viscosity_one(), hydraulic_radius());
     const pfv::Forces forces = exact.evaluate(packing.view());
     EXPECT_TRUE(forces.total.allFinite());
     EXPECT_GT(exact.report().counts.merged_pores, 0);
     EXPECT_LT(std::abs(exact.report().mass_error), 1e-11);
     EXPECT_LT(exact.report().force_balance_error, 1e-14);
     const pfv::PackingArrays moved = jittered(packing, 1e-12);
-    pfv::Flow other(upward_box(pfv::Wall::no_slip), viscosity_one());
+    pfv::Flow other(upward_box(pfv::Wall::no_slip), viscosity_one(), hydraulic_radius());
     other.evaluate(moved.view());
     EXPECT_NEAR(*other.report().permeability / *exact.report().permeability, 1.0, 1e-6);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's eight- and nine-sphere cells (Chareyre et al. 2012, sec. 4.2, table 2) beside our own
-// finite-element Stokes solutions (stokes_nine_spheres.csv: K 0.2 %, totals 0.1 %, viscous parts 1 %).
+// finite-element Stokes solutions (stokes_nine_spheres.csv: K 0.2 %, totals 0.1 %, viscous parts 1
+// %).
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
@@ -87,8 +88,8 @@ TEST(NineSpheres, EffectiveRadiusGivesTheRecordedShareOfTheStokesPermeability) {
 }
 
 // Measured against the Stokes solution in all ten cells: totals of the big spheres 0.0-1.1 % high;
-// their pressure parts 1.0-5.1 % high and viscous parts 3-24 % low (the split, not the sum, depends on
-// what A^k and A^f take).
+// their pressure parts 1.0-5.1 % high and viscous parts 3-24 % low (the split, not the sum, depends
+// on what A^k and A^f take).
 TEST(NineSpheres, ForcesOnTheBigSpheresAreTheStokesForces) {
   for (const Row& row : table("stokes_nine_spheres.csv")) {
     const Solution s = solve(number(row, "d_over_D"), wall_of(row));
@@ -116,8 +117,8 @@ TEST(NineSpheres, ForceOnTheSmallSphereIsTheStokesForceFromDOverD04On) {
 }
 
 // Table 2 of the paper, d/D = 0.72, no-slip walls. Our values stand beside its PFV column. Big
-// sphere: viscous 9 % and total 0.5 % off, pressure 1.6 %; small sphere: 16, 4 and 6 %; wall 8 %. The
-// paper's column has the unsigned partition and walls of finite radius; its total on the solid
+// sphere: viscous 9 % and total 0.5 % off, pressure 1.6 %; small sphere: 16, 4 and 6 %; wall 8 %.
+// The paper's column has the unsigned partition and walls of finite radius; its total on the solid
 // misses 1 by 1.2e-4, ours does not. All of our totals lie nearer to the Stokes solution.
 TEST(NineSpheres, Table2IsRecordedBesideThePapersColumn) {
   const Solution s = solve(0.72, pfv::Wall::no_slip);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 36 equal spheres at random, not touching, beside finite-element Stokes solutions (error 1-1.5 %, on
-// the low side). The hydraulic-radius law is too permeable where spheres do not touch (as for loosened
-// lattices); how much is recorded here. Forces hardly depend on the law.
+// 36 equal spheres at random, not touching, beside finite-element Stokes solutions (error 1-1.5 %,
+// on the low side). The hydraulic-radius law is too permeable where spheres do not touch (as for
+// loosened lattices); how much is recorded here. Forces hardly depend on the law.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
@@ -22,7 +22,7 @@ Comparison compare(const std::string& bed, const std::string& wall) {
   const pfv::PackingArrays packing = data_packing("packing_36_" + bed + ".csv");
   pfv::Flow flow(
       upward_box(wall == "symmetry" ? pfv::Wall::symmetry : pfv::Wall::no_slip),
-      viscosity_one());
+      viscosity_one(), hydraulic_radius());
   const pfv::Forces& forces = flow.evaluate(packing.view());
   Comparison result{};
   for (const Row& row : table("stokes_36_permeability.csv"))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// YADE 2023.02a, the reference implementation of the method, on packing_100 and packing_500. Its rules
-// differ from ours (support/yade_rules.hpp). With its rules on our network its numbers come out, so
-// network, system and solver agree with it and the rules are the whole difference.
+// YADE 2023.02a, the reference implementation of the method, on packing_100 and packing_500. Its
+// rules differ from ours (support/yade_rules.hpp). With its rules on our network its numbers come
+// out, so network, system and solver agree with it and the rules are the whole difference.
 #include "support/yade_rules.hpp"
 
 #include "pfv/pfv.hpp"
@@ -212,8 +212,9 @@ void expect_shares(const Case& c, const Shares& expected) {
   EXPECT_NEAR(no_factor / theirs, expected.symmetry_factor, 1e-4);
 }
 
-// Values of our own, recorded to show how the differences come about: overlapping discs counted once,
-// the signed partition, and no factor 2^(-n_w/2) at symmetry walls (facts of the three rules above).
+// Values of our own, recorded to show how the differences come about: overlapping discs counted
+// once, the signed partition, and no factor 2^(-n_w/2) at symmetry walls (facts of the three rules
+// above).
 TEST(YadeDifferences, EachRuleIsWorthItsShareOfThePermeability) {
   expect_shares({"100", "symmetry"}, {1.2488, 1.0555, 1.0052, 1.1770});
   expect_shares({"100", "no_slip"}, {1.0449, 1.0346, 1.0100, 1.0});

@@ -4,6 +4,7 @@
 #include "pfv/box.hpp"
 #include "pfv/error.hpp"
 #include "pfv/fluid.hpp"
+#include "pfv/options.hpp"
 
 #include <functional>
 #include <gtest/gtest.h>
@@ -30,6 +31,13 @@ inline pfv::Fluid viscosity_one() {
   pfv::Fluid fluid;
   fluid.viscosity = 1.0;
   return fluid;
+}
+
+/// The law of the papers, whatever the default is.
+inline pfv::Options hydraulic_radius() {
+  pfv::Options options;
+  options.conductance = pfv::ConductanceLaw::hydraulic_radius;
+  return options;
 }
 
 /// The message of the InputError that `action` throws; fails the test where there is none.

@@ -58,8 +58,8 @@ inline pfv::PackingArrays data_packing(const std::string& name) {
   return pfv::read_packing(std::string(PFV_TEST_DATA) + "/" + name);
 }
 
-/// Spheres placed at random one after another (random sequential addition): they neither overlap nor
-/// cross a face. Radii are spread evenly over their logarithm, large spheres first.
+/// Spheres placed at random one after another (random sequential addition): they neither overlap
+/// nor cross a face. Radii are spread evenly over their logarithm, large spheres first.
 inline pfv::PackingArrays random_packing(int count, double smallest, double largest,
                                          std::uint64_t seed, const pfv::Box& box = {}) {
   Random random(seed);

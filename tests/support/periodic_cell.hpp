@@ -10,8 +10,8 @@
 
 namespace support {
 
-/// The unit cell in the middle of a lattice of `n` (odd) cells a side in the unit cube: its pores and
-/// the flow through its periodic continuation, without any wall.
+/// The unit cell in the middle of a lattice of `n` (odd) cells a side in the unit cube: its pores
+/// and the flow through its periodic continuation, without any wall.
 class PeriodicCell {
  public:
   PeriodicCell(const Stages& s, const std::vector<double>& conductances, int n)

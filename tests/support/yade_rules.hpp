@@ -12,11 +12,12 @@
 #include <utility>
 #include <vector>
 
-/// The rules of YADE 2023.02a's FlowEngine, as far as they differ from ours, applied to our network.
-/// Written from its documented behaviour and its output, to trace every difference of the results:
+/// The rules of YADE 2023.02a's FlowEngine, as far as they differ from ours, applied to our
+/// network. Written from its documented behaviour and its output, to trace every difference of the
+/// results:
 /// - the throat's domain is partitioned around the dual edge with unsigned solid angles;
-/// - a disc takes its full sector of the facet, overlaps or not; one that crosses the opposite side of
-///   its triangle gives the segment beyond it back;
+/// - a disc takes its full sector of the facet, overlaps or not; one that crosses the opposite side
+///   of its triangle gives the segment beyond it back;
 /// - symmetry walls multiply a conductance by 2^(-1/2) per wall of the facet;
 /// - walls rub only where they are no-slip walls without a pressure.
 namespace support {
@@ -109,8 +110,8 @@ inline YadeThroat yade_throat(const Stages& s, int facet_number, YadeRules rules
   return throat;
 }
 
-/// YADE's forces on the spheres for given pore pressures. Its loop leaves out the cells in the eight
-/// corners of the box, as if their pressure were zero.
+/// YADE's forces on the spheres for given pore pressures. Its loop leaves out the cells in the
+/// eight corners of the box, as if their pressure were zero.
 inline Eigen::Matrix3Xd yade_forces(const Stages& s, Eigen::VectorXd pressures) {
   for (int c = 0; c < s.network.cells(); ++c)
     if (pfv::is_wall(s.network.cell_vertices[c][1])) pressures[s.network.cell_pore[c]] = 0.0;

@@ -51,8 +51,9 @@ Stages three_spheres(const std::vector<Sphere>& spheres) {
 
 TEST(InscribedCircle, BetweenEqualSpheresOnAnEqualSidedTriangle) {
   const double a = 0.3, r = 0.1;
+  const double height = a * std::sqrt(0.75);
   const Stages s = three_spheres(
-      {{0.4, 0.4, 0.5, r}, {0.4 + a, 0.4, 0.5, r}, {0.4 + a / 2, 0.4 + a * std::sqrt(0.75), 0.5, r}});
+      {{0.4, 0.4, 0.5, r}, {0.4 + a, 0.4, 0.5, r}, {0.4 + a / 2, 0.4 + height, 0.5, r}});
   EXPECT_NEAR(inscribed_radius(s, {0, 1, 2}), a / std::sqrt(3.0) - r, 1e-14);
 }
 
@@ -101,8 +102,9 @@ TEST(EffectiveRadius, TakesTheSmallestCircleOfAPolygon) {
 // Discs that cover their facet close it; the throat is counted.
 TEST(DegenerateThroats, AreClosedWhereDiscsCoverTheFacet) {
   const double a = 0.3, r = 0.18;  // circumradius 0.173
+  const double height = a * std::sqrt(0.75);
   const Stages s = three_spheres(
-      {{0.4, 0.4, 0.5, r}, {0.4 + a, 0.4, 0.5, r}, {0.4 + a / 2, 0.4 + a * std::sqrt(0.75), 0.5, r}});
+      {{0.4, 0.4, 0.5, r}, {0.4 + a, 0.4, 0.5, r}, {0.4 + a / 2, 0.4 + height, 0.5, r}});
   const auto c =
       pfv::conductances(ConductanceLaw::hydraulic_radius, 1.0, s.network, s.throats, s.spheres);
   EXPECT_EQ(c.degenerate, 1);

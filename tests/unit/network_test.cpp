@@ -30,7 +30,8 @@ TEST(DualVertices, HaveEqualPowerToTheirSpheresAndLieOnTheirWalls) {
       const auto& cell = s.network.cell_vertices[c];
       const Eigen::Vector3d p = s.network.cell_centres.col(c);
       const auto power = [&](int k) {
-        return (p - s.spheres.centres.col(k)).squaredNorm() - s.spheres.radii[k] * s.spheres.radii[k];
+        const double r = s.spheres.radii[k];
+        return (p - s.spheres.centres.col(k)).squaredNorm() - r * r;
       };
       for (const pfv::Vertex v : cell) {
         if (pfv::is_wall(v)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Single throats against quadrature that shares no code with the library: phi and gamma by points of
-// directions from each sphere and of volume, A^f by points of the facet.
+// Single throats against quadrature that shares no code with the library: phi and gamma by points
+// of directions from each sphere and of volume, A^f by points of the facet.
 #include "network/facets.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
