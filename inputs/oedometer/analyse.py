@@ -22,8 +22,8 @@ EARLY, LATE = 0.02, 1.5  # T_v between which the curves are compared
 
 # Widest accepted differences; doc/oedometer.md has what was measured.
 TALL = {"p_rms": 0.03, "U_rms": 0.03, "U_rms_uneven": 0.02, "p_early": (0.97, 1.03), "strain": 0.02}
-# Below 5000 grains a sample is six to twelve grains high and its two drained layers hold a tenth of the
-# settlement: U 0.027 to 0.036 in samples of 1000 grains.
+# Below 5000 grains a sample is six to twelve grains high and its two drained layers hold a tenth of
+# the settlement: U 0.027 to 0.036 in samples of 1000 grains.
 LOW = {**TALL, "U_rms": 0.04}
 
 
@@ -210,19 +210,30 @@ def draw_stress(run, figures):
 def print_table(run, figures, rows):
     f = run.figures
     spread = 100 * figures["C_v_relative_error"]
-    print(f"""
-Oedometer, {f['N']} grains (seed {f['SEED']}), load {f['LOAD'] / 1e3:g} kPa on 76 kPa
-  height                   {f['dry_height']['rest']:.5f} m
-  dry strain               {100 * f['dry_strain']:.4f} %   (unloading {100 * f['dry_strain_unloading']:.4f} %)
-  E_oed, dry               {f['E_oed'] / 1e6:.3f} MPa   (unloading {f['E_oed_unloading'] / 1e6:.3f} MPa)
-  permeability             {f['K']:.4e} m2   (loaded {f['K_loaded']:.4e} m2)
-  viscosity                {f['viscosity']:.3g} Pa s
-  C_v = K E_oed / mu       {f['C_v']:.5f} m2/s +- {spread:.2f} %   (best fit: {figures['C_v_best']:.3f} C_v)
-  retriangulations         {figures['retriangulations']} at a pore strain of {f['RETRIANGULATE']:g}
-  mass, force balance      {figures['mass_error_max']:.1e}, {figures['force_balance_error_max']:.1e} (largest)
-  p + effective stress     {figures['total_stress_rms']:.3f} rms from the load at T_v = 0.1
-  CPU per step             {1e3 * f['cpu_coupled_step']:.3f} ms coupled, {1e3 * f['cpu_dry_step']:.3f} ms dry
-""")
+    lines = [
+        ("height", f"{f['dry_height']['rest']:.5f} m"),
+        ("dry strain", f"{100 * f['dry_strain']:.4f} %   "
+                       f"(unloading {100 * f['dry_strain_unloading']:.4f} %)"),
+        ("E_oed, dry", f"{f['E_oed'] / 1e6:.3f} MPa   "
+                       f"(unloading {f['E_oed_unloading'] / 1e6:.3f} MPa)"),
+        ("permeability", f"{f['K']:.4e} m2   (loaded {f['K_loaded']:.4e} m2)"),
+        ("viscosity", f"{f['viscosity']:.3g} Pa s"),
+        ("C_v = K E_oed / mu", f"{f['C_v']:.5f} m2/s +- {spread:.2f} %   "
+                               f"(best fit: {figures['C_v_best']:.3f} C_v)"),
+        ("retriangulations", f"{figures['retriangulations']} at a pore strain of "
+                             f"{f['RETRIANGULATE']:g}"),
+        ("mass, force balance", f"{figures['mass_error_max']:.1e}, "
+                                f"{figures['force_balance_error_max']:.1e} (largest)"),
+        ("p + effective stress", f"{figures['total_stress_rms']:.3f} rms from the load at "
+                                 "T_v = 0.1"),
+        ("CPU per step", f"{1e3 * f['cpu_coupled_step']:.3f} ms coupled, "
+                         f"{1e3 * f['cpu_dry_step']:.3f} ms dry"),
+    ]
+    print(f"\nOedometer, {f['N']} grains (seed {f['SEED']}), "
+          f"load {f['LOAD'] / 1e3:g} kPa on 76 kPa")
+    for name, text in lines:
+        print(f"  {name:<24s} {text}")
+    print()
     for what, measured, wanted, held in rows:
         print(f"  {'ok    ' if held else 'FAILED'} {what:<46s} {measured:8.4f}   {wanted}")
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Consolidation of a layer as uneven as the sample, to tell the sample's unevenness from an error.
 
-Terzaghi's sample is uniform. Ours is some ten to sixteen grains high, its permeability and stiffness
+Terzaghi's sample is uniform. Ours is ten to sixteen grains high, its permeability and stiffness
 change with height, and the pores that touch a drained plate have the plate's pressure, so that the
 first layer of grains gives off its water at once. Two measurements at rest hold all of that: the
 pressures of the steady flow give the share R(z) of the resistance below z, the displacements of the

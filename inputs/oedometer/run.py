@@ -83,7 +83,7 @@ def viscosity_for(grains):
 
 def viscous_limit(grains, viscosity):
     """Largest stable step of the explicit coupling: the papers' pi rho d^2/(1200 mu) times 0.25,
-    measured for clusters of grains in dense packings. Fix pfv prints the limit of this very sample."""
+    measured for clusters of grains in dense packings. Fix pfv knows the limit of the sample."""
     diameter = 1.8 * mean_radius(grains)
     return 0.25 * 3.141592653589793 * DENSITY * diameter**2 / (1200.0 * viscosity)
 
@@ -107,8 +107,10 @@ class Progress:
         self.shown = now
         done = (step - self.first) / (self.last - self.first)
         left = (now - self.start) * (1.0 - done) / done
-        print(f"  {self.stage:<12s} {100 * done:3.0f} %   simulated {step * self.step_time:.4f} s   "
-              f"about {left:.0f} s left", flush=True)
+        simulated = (step - self.first) * self.step_time
+        print(f"  {self.stage:<14s} {100 * done:3.0f} %   "
+              + (f"simulated {simulated:.4f} s   " if simulated else "")
+              + f"about {left:.0f} s left", flush=True)
 
 
 def child_seconds():
@@ -176,8 +178,9 @@ def prepare(settings):
     height = {name: float(said[name][0]) for name in ("rest", "early", "loaded", "unloaded")}
     loading = (height["rest"] - height["loaded"]) / height["rest"]
     unloading = (height["unloaded"] - height["loaded"]) / height["rest"]
-    sample.update(dry_height=height, loaded_bottom=float(said["loaded"][1]), dry_strain=loading, dry_strain_unloading=unloading,
-                  dry_drift=(height["early"] - height["loaded"]) / (height["rest"] - height["loaded"]),
+    sample.update(dry_height=height, loaded_bottom=float(said["loaded"][1]),
+                  dry_strain=loading, dry_strain_unloading=unloading,
+                  dry_drift=(height["early"] - height["loaded"]) / height["rest"] / loading,
                   E_oed=settings["LOAD"] / loading, E_oed_unloading=settings["LOAD"] / unloading,
                   cpu_dry=cpu, cpu_dry_step=cpu / 14000)
     return sample
@@ -187,8 +190,8 @@ def measure_permeability(settings, sample, viscosity):
     out, height = settings["OUT"], sample["dry_height"]
     sample["K"] = permeability(out + ".dump", 0.0, sample["height"], viscosity,
                                out + "_K.json")
-    sample["K_loaded"] = permeability(out + "_loaded.dump", sample["loaded_bottom"], height["loaded"],
-                                      viscosity, out + "_K_loaded.json")
+    sample["K_loaded"] = permeability(out + "_loaded.dump", sample["loaded_bottom"],
+                                      height["loaded"], viscosity, out + "_K_loaded.json")
 
 
 def plan(settings, sample):
@@ -217,7 +220,8 @@ def couple(settings, sample, planned):
     variables = {key: planned[key] for key in
                  ("viscosity", "time_step", "stride", "every", "rest_to", "steps")}
     variables["report"] = max(1, planned["steps"] // 100)
-    variables.update(N=grains, base_moves=int(settings["BASE"] == "floating"), phi=solid_fraction(grains), F0=CONFINEMENT * SIDE**2,
+    variables.update(N=grains, phi=solid_fraction(grains), F0=CONFINEMENT * SIDE**2,
+                     base_moves=int(settings["BASE"] == "floating"),
                      dF=settings["LOAD"] * SIDE**2, out=out, piston_mass=piston_mass(grains),
                      retriangulate=settings["RETRIANGULATE"])
     first, last = sample["step"], planned["rest_to"] + planned["steps"]

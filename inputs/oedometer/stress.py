@@ -35,9 +35,9 @@ def share_below(z, radius, height):
 
 
 def increments(base, steps, edges, area):
-    """Change of sigma_zz between two steps, averaged over horizontal slices; each grain shares itself
-    among them by its volume at the first step. The mean over the grains times (1 - n) is the sum of
-    V sigma over the slice's volume."""
+    """Change of sigma_zz between two steps, averaged over horizontal slices; each grain shares
+    itself among them by its volume at the first step. The mean over the grains times (1 - n) is the
+    sum of V sigma over the slice's volume."""
     z, radius, before = vertical_moments(base, steps[0])
     _, _, after = vertical_moments(base, steps[1])
     below = np.array([share_below(z, radius, height) for height in edges])
