@@ -131,6 +131,16 @@ class Staged(CoupledTest):
         self.assertEqual(dumps[0.9, ""], dumps[0.9, "coupling auto"])
         self.assertEqual(dumps[20, "coupling staged"], dumps[20, "coupling auto"])
 
+    def test_auto_chooses_anew_for_each_network(self):
+        """Just below the limit at first; as the grains settle the limit falls. The network of a step
+        is known after the step, so that the choice follows one step later."""
+        rows = self.thermo(self.script(self.at_ratio(0.99, "coupling auto"), "thermo 1\nrun 100\n"))
+        self.assertEqual(rows[0]["flow[9]"], 1)
+        self.assertEqual(rows[-1]["flow[9]"], 2)
+        for before, row in zip(rows, rows[1:]):
+            if row["flow[5]"] == before["flow[5]"]:
+                self.assertEqual(row["flow[9]"], 2 if STEP > row["flow[6]"] else 1)
+
     # grains that the fluid does not move
 
     def test_frozen_grains_are_the_same_however_they_are_held(self):
@@ -178,7 +188,7 @@ class Staged(CoupledTest):
                     before="group one id 1\nfix early one freeze\n")
 
     def test_fixes_that_add_no_force_or_touch_other_grains_may_come_later(self):
-        write_plate(self.folder / "plate.stl", square(EDGE, 2 * EDGE))
+        write_plate(self.folder / "plate.stl", square(EDGE, 1.2 * EDGE))
         self.liggghts(self.script(self.at_ratio(20), (
             "fix plate all mesh/surface/stress file plate.stl type 1\n"
             "fix down all move/mesh mesh plate linear 0 0 -0.001\n"
