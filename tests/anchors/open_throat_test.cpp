@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The open-throat law beside Stokes flow: the nine-sphere cell and 36 spheres at random (finite
-// elements, not fitted), cubic arrays (Zick & Homsy 1982 and finite elements; the law's one length was
-// fitted on their loosened states), and beside the papers' law in dense beds.
+// elements, not fitted), cubic arrays (Zick & Homsy 1982 and finite elements; the law's one length
+// was fitted on their loosened states), and beside the papers' law in dense beds.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"

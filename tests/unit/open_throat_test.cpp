@@ -96,8 +96,8 @@ TEST(OpenThroat, IsTheHydraulicRadiusWhereSpheresAndSlipWallsTouch) {
     EXPECT_NEAR(open.value[t] / papers.value[t], 1.0, 1e-7);  // gaps of rounding: w of 1e-15 / 0.18
 }
 
-// Stokes: a sphere of radius a in each cell of edge L lets k = L³ / (6 pi a) through, 1 - 1.76 c^(1/3)
-// times that. Measured within 1.6 %.
+// Stokes: a sphere of radius a in each cell of edge L lets k = L³ / (6 pi a) through, 1 - 1.76
+// c^(1/3) times that. Measured within 1.6 %.
 TEST(OpenThroat, IsStokesDragOnSpheresFarApart) {
   for (const double a : {0.05, 0.025, 0.0125}) {
     pfv::Options options;
