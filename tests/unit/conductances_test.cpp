@@ -111,4 +111,19 @@ TEST(DegenerateThroats, AreClosedWhereDiscsCoverTheFacet) {
   EXPECT_EQ(std::count(c.value.begin(), c.value.end(), 0.0), 1);
 }
 
+// A sphere 1e4 times smaller than its pore leaves phi / gamma without bound; conductances 1e25
+// apart could not be factored. R_h is held at 100 sqrt(S), where a throat resists nothing.
+TEST(DegenerateThroats, OfTinySpheresHaveABoundedHydraulicRadius) {
+  pfv::Box box;
+  for (const pfv::Face face : pfv::all_faces) box[face].wall = pfv::Wall::symmetry;
+  const Stages s = stages_of(packing_of({{0.4, 0.5, 0.45, 1e-5}, {0.7, 0.45, 0.6, 1e-5}}), box);
+  const auto c =
+      pfv::conductances(ConductanceLaw::hydraulic_radius, 1.0, s.network, s.throats, s.spheres);
+  EXPECT_EQ(c.degenerate, s.network.throats());
+  for (int t = 0; t < s.network.throats(); ++t)
+    EXPECT_NEAR(c.value[t] * s.throats.length[t] /
+                    (0.5 * s.throats.fluid_area[t] * 1e4 * s.throats.area[t]),
+                1.0, 1e-13);
+}
+
 }  // namespace

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pressures at places, over planes, and fluxes of throats.
+#include "pfv/pfv.hpp"
+#include "support/boxes.hpp"
+#include "support/packings.hpp"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace support;
+
+// On a simple cubic lattice of n layers the pores lie in n + 1 layers between them, and the
+// pressure falls by 1/n from each to the next.
+TEST(Fields, OfASimpleCubicLatticeFallInEqualSteps) {
+  const int n = 4;
+  const auto packing = lattice(Lattice::sc, n);
+  pfv::Flow flow(upward_box(pfv::Wall::symmetry), viscosity_one(), hydraulic_radius());
+  flow.evaluate(packing.view());
+  for (int layer = 0; layer <= n; ++layer) {
+    const double z = std::min(std::max(static_cast<double>(layer) / n, 1e-3), 1.0 - 1e-3);
+    const double expected = 1.0 - static_cast<double>(layer) / n;
+    EXPECT_NEAR(flow.pressure_at({0.5, 0.26, z}), expected, 1e-14);
+    EXPECT_NEAR(flow.pressure_at({0.01, 0.99, z}), expected, 1e-14);
+    EXPECT_NEAR(flow.plane_pressure(2, z), expected, 1e-14);
+  }
+  EXPECT_NEAR(flow.mean_pressure(), 0.5, 1e-14);
+  EXPECT_NEAR(flow.plane_pressure(0, 0.3), 0.5, 1e-14);
+}
+
+TEST(Fields, PressureAtEachPlaceIsThatOfACellWithItsPore) {
+  const auto packing = data_packing("packing_500.csv");
+  pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
+  flow.evaluate(packing.view());
+  const pfv::PoreNetwork& network = flow.network();
+  int compared = 0;
+  for (int c = 0; c < network.cells(); ++c) {
+    const auto& cell = network.cell_vertices[c];
+    if (pfv::is_wall(cell[3])) continue;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const int v : cell) middle += 0.25 * packing.positions.col(v);
+    EXPECT_EQ(flow.pressure_at(middle), flow.pore_pressures()[network.cell_pore[c]]);
+    ++compared;
+  }
+  EXPECT_GT(compared, 1000);
+}
+
+TEST(Fields, ThroatFluxesLeaveEachInnerPoreBalanced) {
+  const auto packing = data_packing("packing_500.csv");
+  pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
+  flow.evaluate(packing.view());
+  const pfv::PoreNetwork& network = flow.network();
+  const auto flux = flow.throat_fluxes();
+  const auto& conductance = flow.throat_conductances();
+  Eigen::VectorXd net = Eigen::VectorXd::Zero(network.pores());
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    EXPECT_NEAR(flux[t], conductance[t] * (flow.pore_pressures()[i] - flow.pore_pressures()[j]),
+                1e-15 * conductance[t]);
+    net[i] -= flux[t];
+    net[j] += flux[t];
+  }
+  double outflow = 0.0;
+  for (int p = 0; p < network.pores(); ++p) {
+    const bool top = network.pore_faces[p] >> 5 & 1, bottom = network.pore_faces[p] >> 4 & 1;
+    if (!top && !bottom) EXPECT_NEAR(net[p], 0.0, 1e-12 * flow.report().inflow);
+    if (top) outflow += net[p];
+  }
+  EXPECT_NEAR(outflow / flow.report().outflow, 1.0, 1e-11);
+}
+
+TEST(Fields, PoreVolumesAreTheFluidOfTheBox) {
+  const auto packing = random_packing(100, 0.04, 0.08, 4);
+  pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
+  flow.evaluate(packing.view());
+  EXPECT_NEAR(flow.pore_volumes().sum(), 1.0 - solid_volume(packing), 1e-13);
+  EXPECT_NEAR(flow.report().pore_volume, 1.0 - solid_volume(packing), 1e-13);
+}
+
+}  // namespace
