@@ -42,7 +42,8 @@ def same_sample(name, source):
 def sample_table(runs):
     lines = ["| N | seed | base | E_oed, MPa | K, m² | C_v, m²/s | p(H/2), rms | U, rms | "
              "largest p(H/2) before T_v 0.02 | strain / dry - 1 | "
-             "U against the uneven layer, rms | p + σ', rms from the load | CPU with fluid, s | CPU without, s |",
+             "U against the uneven layer, rms | p + σ', rms from the load | "
+             "CPU with fluid, s | CPU without, s |",
              "|--|--|--|--|--|--|--|--|--|--|--|--|--|--|"]
     for r in runs:
         steps = r["cpu_coupled"] / r["cpu_coupled_step"]
