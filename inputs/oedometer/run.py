@@ -36,21 +36,25 @@ class Failure(Exception):
     """What went wrong and what to do, in one line."""
 
 
+class BadSetting(Failure):
+    """A word of the command that means nothing here."""
+
+
 def parse(words):
     settings = {key: default for key, (_, default, _) in KEYS.items()}
     for word in words:
         key, equals, value = word.partition("=")
         if not equals or key not in KEYS:
             known = ", ".join(f"{k} ({what})" for k, (_, _, what) in KEYS.items())
-            raise SystemExit(f"oedometer: '{word}' is not KEY=VALUE with a known key: {known}")
+            raise BadSetting(f"'{word}' is not KEY=VALUE with a known key: {known}")
         try:
             settings[key] = KEYS[key][0](value)
         except ValueError:
-            raise SystemExit(f"oedometer: {key} needs a number, not '{value}'") from None
+            raise BadSetting(f"{key} needs a number, not '{value}'") from None
     if settings["N"] < 100 or settings["SEED"] < 1 or settings["LOAD"] <= 0:
-        raise SystemExit("oedometer: N must be at least 100, SEED at least 1, LOAD above 0")
+        raise BadSetting("N must be at least 100, SEED at least 1, LOAD above 0")
     if settings["BASE"] not in ("floating", "fixed"):
-        raise SystemExit("oedometer: BASE must be floating or fixed")
+        raise BadSetting("BASE must be floating or fixed")
     return settings
 
 
@@ -259,7 +263,7 @@ def main(words):
         summary = run(parse(words))
     except Failure as failure:
         print(f"oedometer: {failure}", file=sys.stderr)
-        return 1
+        return 2 if isinstance(failure, BadSetting) else 1
     return 0 if summary["passed"] else 1
 
 
