@@ -117,7 +117,7 @@ class Flow {
   double mean_pressure() const;
   /// The limit of the explicit coupling, dt < 2 / lambda_max(M^-1 S G^-1 E), s, by power
   /// iteration on the kept factor (masses in kg, one a sphere of the last packing). Infinite where
-  /// nothing is unknown. Cost: about 20 solves for a new network, none when it was asked before.
+  /// nothing is unknown. Cost: some 20 to 40 solves for a new network, none when it was asked before.
   double time_step_limit(const Eigen::VectorXd& masses);
   std::int64_t retriangulations() const;
   /// Hidden spheres plus those left out because their centre is outside the box.
