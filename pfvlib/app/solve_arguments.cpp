@@ -190,8 +190,8 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
       ->option_text("auto|cholmod|klu2")->group(group);
   command.add_option("--ordering", arguments.ordering,
                      "fill-reducing ordering (default " + arguments.ordering +
-                     ": metis; klu2 has amd only)")
-      ->option_text("auto|metis|amd")->group(group);
+                     ": geometric; klu2 has amd only)")
+      ->option_text("auto|geometric|metis|amd")->group(group);
   command.add_option("--repeat", arguments.repeat,
                      "further steps on the kept network, for timing, >= 1 (default: 0)")
       ->option_text("K")->group(group);

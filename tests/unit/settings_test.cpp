@@ -54,7 +54,7 @@ TEST(Names, EachOptionReadsBackAsItself) {
 
 TEST(Names, AnUnknownNameIsRefusedWithTheListOfThoseThatExist) {
   expect_names(refusal([] { pfv::solver_named("pardiso"); }), "auto, cholmod, klu2");
-  expect_names(refusal([] { pfv::ordering_named(""); }), "auto, metis, amd");
+  expect_names(refusal([] { pfv::ordering_named(""); }), "auto, geometric, metis, amd");
   expect_names(refusal([] { pfv::conductance_law_named("Hydraulic_radius"); }),
                "hydraulic_radius, effective_radius");
   expect_names(refusal([] { pfv::face_named("xmid"); }), "xlo, xhi, ylo, yhi, zlo, zhi");

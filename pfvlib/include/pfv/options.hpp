@@ -13,8 +13,9 @@ enum class ConductanceLaw { hydraulic_radius, effective_radius, open_throat };
 /// Direct solvers, all behind Amesos2. `automatic` is cholmod; klu2 is the plain reference.
 enum class SolverKind { automatic, cholmod, klu2 };
 
-/// Fill-reducing ordering. `automatic` is metis; klu2 has its own (amd) and refuses another.
-enum class OrderingKind { automatic, metis, amd };
+/// Fill-reducing ordering: nested dissection of the pore centres in space (`automatic`) or of the
+/// graph by METIS, or minimum degree; klu2 has its own (amd) and refuses another.
+enum class OrderingKind { automatic, geometric, metis, amd };
 
 /// How a throat's domain is parted among pores and spheres. `signed_angles`: signed volumes and solid
 /// angles, whose sums are the pore volume and the solid surface. `yade`: the rules of YADE's FlowEngine,

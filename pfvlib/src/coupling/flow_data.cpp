@@ -15,6 +15,16 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+/// A place for each unknown: that of its pore, or of one of those that share it.
+Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built) {
+  Eigen::Matrix3Xd places(3, built.unknowns.count);
+  for (int p = 0; p < built.network.pores(); ++p) {
+    const int unknown = built.unknowns.of_pore[p];
+    if (unknown != Unknowns::imposed) places.col(unknown) = built.network.pore_centres.col(p);
+  }
+  return places;
+}
+
 }  // namespace
 
 const Forces& FlowData::compute(const Packing& packing, double step, bool advance,
@@ -156,7 +166,7 @@ void FlowData::assemble_and_factor(double step) {
   if (built->unknowns.count > 0) {
     if (new_pattern) {
       const PhaseClock clock(seconds.order);
-      built->solver->order(built->system.matrix);
+      built->solver->order(built->system.matrix, unknown_places(*built));
       ++counts.order;
     }
     const PhaseClock clock(seconds.factor);

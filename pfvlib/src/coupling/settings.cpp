@@ -4,6 +4,7 @@
 #include "pfv/error.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
+#include "solve/linear_solver.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -29,7 +30,8 @@ constexpr std::array<Named<Partition>, 2> partitions{
 constexpr std::array<Named<SolverKind>, 3> solvers{{{SolverKind::automatic, "auto"},
                                                     {SolverKind::cholmod, "cholmod"},
                                                     {SolverKind::klu2, "klu2"}}};
-constexpr std::array<Named<OrderingKind>, 3> orderings{{{OrderingKind::automatic, "auto"},
+constexpr std::array<Named<OrderingKind>, 4> orderings{{{OrderingKind::automatic, "auto"},
+                                                        {OrderingKind::geometric, "geometric"},
                                                         {OrderingKind::metis, "metis"},
                                                         {OrderingKind::amd, "amd"}}};
 
@@ -196,8 +198,7 @@ void check(const Options& options) {
   if (!(options.retriangulation_strain > 0))  // infinite: never, as far as strain goes
     throw InputError("retriangulation strain is " + number_text(options.retriangulation_strain) +
                      ": give a number > 0");
-  if (options.solver == SolverKind::klu2 && options.ordering == OrderingKind::metis)
-    throw InputError("solver klu2 orders with amd: leave out ordering metis or use cholmod");
+  check(options.solver, options.ordering);
   if (!options.forces && (options.split_forces || options.sphere_pressure))
     throw InputError("split forces and sphere pressures need forces: switch those on too");
 }

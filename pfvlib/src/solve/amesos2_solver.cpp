@@ -93,10 +93,10 @@ class Amesos2Solver final : public LinearSolver {
 
   std::string name() const override { return name_of(solver_); }
 
-  void order(const SymmetricMatrix& matrix) override {
+  void order(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd& coordinates) override {
     is_ordered_ = is_factored_ = false;
     size_ = matrix.size();
-    if (size_ > 0) guarded("ordering", [&] { build(matrix); });
+    if (size_ > 0) guarded("ordering", [&] { build(matrix, coordinates); });
     is_ordered_ = true;
   }
 
@@ -128,17 +128,15 @@ class Amesos2Solver final : public LinearSolver {
   }
 
  private:
-  void build(const SymmetricMatrix& matrix) {
+  void build(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd& coordinates) {
     matrix_ = tpetra_pattern(matrix);
     right_side_ = Teuchos::rcp(new Vector(matrix_->getRangeMap(), 1));
     solution_ = Teuchos::rcp(new Vector(matrix_->getDomainMap(), 1));
     if (solver_ == SolverKind::klu2) {
       amesos2_ = Amesos2::create<Matrix, Vector>("KLU2", matrix_);
     } else {
-      auto permutation = ordering_ == OrderingKind::metis ? metis_ordering(matrix)
-                                                          : std::vector<int>();
-      amesos2_ = Teuchos::rcp(
-          new CholmodSupernodal<Matrix, Vector>(matrix_, std::move(permutation)));
+      amesos2_ = Teuchos::rcp(new CholmodSupernodal<Matrix, Vector>(
+          matrix_, fill_reducing_ordering(ordering_, matrix, coordinates)));
     }
     amesos2_->symbolicFactorization();
   }

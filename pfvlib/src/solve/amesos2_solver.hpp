@@ -8,7 +8,7 @@
 namespace pfv {
 
 /// A direct solver behind Amesos2 on a Tpetra matrix, on the calling rank alone: it talks to no
-/// other rank and needs no MPI_Init. Both choices must be resolved and fit each other.
+/// other rank and needs no MPI_Init. The solver must be resolved and take the ordering.
 std::unique_ptr<LinearSolver> make_amesos2_solver(SolverKind solver, OrderingKind ordering);
 
 }  // namespace pfv

@@ -24,15 +24,20 @@ SolverKind resolved(SolverKind solver) {
 
 OrderingKind resolved(SolverKind solver, OrderingKind ordering) {
   if (ordering != OrderingKind::automatic) return ordering;
-  return resolved(solver) == SolverKind::klu2 ? OrderingKind::amd : OrderingKind::metis;
+  return resolved(solver) == SolverKind::klu2 ? OrderingKind::amd : OrderingKind::geometric;
+}
+
+void check(SolverKind solver, OrderingKind ordering) {
+  const bool orders_itself = ordering == OrderingKind::automatic || ordering == OrderingKind::amd;
+  if (resolved(solver) == SolverKind::klu2 && !orders_itself) {
+    throw InputError(std::string("the solver klu2 has an ordering of its own and takes no ") +
+                     name_of(ordering) + "; use the ordering amd or auto, or the solver cholmod");
+  }
 }
 
 std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering) {
-  if (solver == SolverKind::klu2 && ordering == OrderingKind::metis) {
-    throw InputError("the solver klu2 has an ordering of its own and takes no metis; use the "
-                     "ordering amd or auto, or the solver cholmod");
-  }
-  return make_amesos2_solver(resolved(solver), resolved(solver, ordering));
+  check(solver, ordering);
+  return make_amesos2_solver(resolved(solver), ordering);
 }
 
 }  // namespace pfv

@@ -31,8 +31,9 @@ Eigen::VectorXd multiply(const SymmetricMatrix& matrix, const Eigen::VectorXd& x
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
-  /// Fill-reducing ordering and symbolic factorisation of the pattern.
-  virtual void order(const SymmetricMatrix& matrix) = 0;
+  /// Fill-reducing ordering and symbolic factorisation of the pattern. `coordinates`: the place of
+  /// each unknown, one column each, or empty where nothing geometric is wanted.
+  virtual void order(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd& coordinates = {}) = 0;
   /// Numeric factorisation; `matrix` has the pattern given to `order`, else SolverError.
   virtual void factor(const SymmetricMatrix& matrix) = 0;
   /// x = A^-1 b; both of length n.
@@ -44,7 +45,10 @@ class LinearSolver {
 /// combination that makes no sense.
 std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering);
 
-/// What `automatic` stands for.
+/// Throws InputError for an ordering that the solver does not take.
+void check(SolverKind solver, OrderingKind ordering);
+
+/// What `automatic` stands for where the places of the unknowns are given.
 SolverKind resolved(SolverKind solver);
 OrderingKind resolved(SolverKind solver, OrderingKind ordering);
 

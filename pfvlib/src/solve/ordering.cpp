@@ -30,6 +30,16 @@ Graph graph_of(const SymmetricMatrix& matrix) {
 
 }  // namespace
 
+std::vector<int> fill_reducing_ordering(OrderingKind kind, const SymmetricMatrix& matrix,
+                                        const Eigen::Matrix3Xd& coordinates) {
+  if (kind == OrderingKind::automatic) {
+    kind = coordinates.cols() > 0 ? OrderingKind::geometric : OrderingKind::metis;
+  }
+  if (kind == OrderingKind::geometric) return geometric_ordering(matrix, coordinates);
+  if (kind == OrderingKind::metis) return metis_ordering(matrix);
+  return {};
+}
+
 std::vector<int> metis_ordering(const SymmetricMatrix& matrix) {
   Graph graph = graph_of(matrix);
   std::vector<idx_t> permutation(matrix.size());
