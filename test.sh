@@ -21,7 +21,10 @@ cmake --build "$root/build-sanitize" --target unit_tests
 ASAN_OPTIONS=detect_leaks=0 "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
 
 if [ "${1:-}" = long ]; then
-  "$root/run.sh" oedometer
-  (cd "$root/inputs/oedometer" && /usr/bin/python3 study.py)
+  "$root/run.sh" oedometer N=5000
+  "$root/run.sh" oedometer study
+  "$root/run.sh" stability write
+  "$root/doc/accuracy.py"
+  "$root/tests/bench/table.py"
 fi
 ctest --test-dir "$root/build" --output-on-failure -j 2

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Permeability of every law against Stokes flow; writes doc/accuracy.md:  doc/accuracy.py [BUILD]
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the benchmarks of each phase and writes doc/benchmarks.md:  tests/bench/table.py [BUILD]
 
