@@ -187,10 +187,10 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
       ->option_text("signed|yade")->group(group);
   command.add_option("--solver", arguments.solver,
                      "linear solver (default " + arguments.solver + ": cholmod)")
-      ->option_text("auto|cholmod|klu2")->group(group);
+      ->option_text("auto|cholmod|klu2|mumps|cg|gauss_seidel")->group(group);
   command.add_option("--ordering", arguments.ordering,
                      "fill-reducing ordering (default " + arguments.ordering +
-                     ": geometric; klu2 has amd only)")
+                     ": geometric; for cholmod)")
       ->option_text("auto|geometric|metis|amd")->group(group);
   command.add_option("--repeat", arguments.repeat,
                      "further steps on the kept network, for timing, >= 1 (default: 0)")

@@ -209,8 +209,8 @@ Eigen::Matrix3Xd lattice_places(int edge) {
   return places;
 }
 
-/// Entries of the Cholesky factor of the matrix in this order: those of each row are the vertices of
-/// smaller number that a walk to smaller ones of the elimination tree meets (Liu 1990).
+/// Entries of the Cholesky factor of the matrix in this order: those of each row are the vertices
+/// of smaller number that a walk to smaller ones of the elimination tree meets (Liu 1990).
 std::int64_t fill(const SymmetricMatrix& matrix, const std::vector<int>& order) {
   const int n = matrix.size();
   std::vector<int> place(n), parent(n, -1), seen(n, -1);
@@ -292,6 +292,7 @@ struct Choice {
   SolverKind solver;
   OrderingKind ordering;
   const char* label;
+  double residual = 0.0;  ///< that an iterative solver may leave
 };
 
 class EverySolver : public testing::TestWithParam<Choice> {
@@ -300,20 +301,28 @@ class EverySolver : public testing::TestWithParam<Choice> {
   static std::unique_ptr<LinearSolver> fresh() {
     return make_solver(GetParam().solver, GetParam().ordering);
   }
+  /// The error of a direct solver, or what an iterative one leaves.
+  static double within(double rounding) { return std::max(rounding, GetParam().residual); }
 };
 
 INSTANTIATE_TEST_SUITE_P(
     Solvers, EverySolver,
     testing::Values(Choice{SolverKind::cholmod, OrderingKind::metis, "cholmod_metis"},
                     Choice{SolverKind::cholmod, OrderingKind::amd, "cholmod_amd"},
-                    Choice{SolverKind::klu2, OrderingKind::amd, "klu2_amd"}),
+                    Choice{SolverKind::klu2, OrderingKind::amd, "klu2_amd"},
+#ifdef PFV_WITH_MUMPS
+                    Choice{SolverKind::mumps, OrderingKind::automatic, "mumps"},
+#endif
+                    Choice{SolverKind::cg, OrderingKind::automatic, "cg", 1e-10},
+                    Choice{SolverKind::gauss_seidel, OrderingKind::automatic, "gauss_seidel",
+                           1e-10}),
     [](const auto& info) { return std::string(info.param.label); });
 
 // The discrete parabola i (n + 1 - i) / 2 is the exact solution for a right-hand side of ones.
 TEST_P(EverySolver, GivesTheParabolaOfALine) {
   const int n = 10;
   const Eigen::VectorXd x = solution(*solver_, compressed(line(n)), Eigen::VectorXd::Ones(n));
-  for (int i = 1; i <= n; ++i) EXPECT_NEAR(x[i - 1], 0.5 * i * (n + 1 - i), 1e-13);
+  for (int i = 1; i <= n; ++i) EXPECT_NEAR(x[i - 1], 0.5 * i * (n + 1 - i), 50 * within(2e-15));
 }
 
 TEST_P(EverySolver, TakesNoUnknowns) {
@@ -326,14 +335,14 @@ TEST_P(EverySolver, TakesNoUnknowns) {
 
 TEST_P(EverySolver, TakesOneUnknown) {
   const Eigen::VectorXd b = Eigen::VectorXd::Constant(1, 6.0);
-  EXPECT_DOUBLE_EQ(solution(*solver_, compressed(Rows{{{0, 4.0}}}), b)[0], 1.5);
+  EXPECT_NEAR(solution(*solver_, compressed(Rows{{{0, 4.0}}}), b)[0], 1.5, 1.5 * within(3e-16));
 }
 
 TEST_P(EverySolver, TakesADiagonalMatrixOverThirtyDecades) {
   Rows rows(31);
   for (int i = 0; i < 31; ++i) rows[i][i] = std::pow(10.0, i - 20);
   const Eigen::VectorXd x = solution(*solver_, compressed(rows), Eigen::VectorXd::Ones(31));
-  for (int i = 0; i < 31; ++i) EXPECT_NEAR(x[i] * rows[i][i], 1.0, 1e-15);
+  for (int i = 0; i < 31; ++i) EXPECT_NEAR(x[i] * rows[i][i], 1.0, within(1e-15) * 6);
 }
 
 TEST_P(EverySolver, TakesGroupsThatDoNotTouch) {
@@ -344,20 +353,20 @@ TEST_P(EverySolver, TakesGroupsThatDoNotTouch) {
   const SymmetricMatrix matrix = compressed(rows);
   const Eigen::VectorXd b = right_side(7);
   const Eigen::VectorXd x = solution(*solver_, matrix, b);
-  EXPECT_DOUBLE_EQ(x[3], b[3] / 5.0);
-  EXPECT_LT(residual(matrix, x, b), 1e-15);
+  EXPECT_NEAR(x[3], b[3] / 5.0, within(1e-16) * 5);
+  EXPECT_LE(residual(matrix, x, b), within(1e-15));
 }
 
 TEST_P(EverySolver, LeavesNoResidualOnAThousandPores) {
   const SymmetricMatrix matrix = lattice(10);
   const Eigen::VectorXd b = right_side(matrix.size());
-  EXPECT_LT(residual(matrix, solution(*solver_, matrix, b), b), 1e-12);
+  EXPECT_LE(residual(matrix, solution(*solver_, matrix, b), b), within(1e-12));
 }
 
 TEST_P(EverySolver, LeavesNoResidualOnFiveThousandPores) {
   const SymmetricMatrix matrix = lattice(17);
   const Eigen::VectorXd b = right_side(matrix.size());
-  EXPECT_LT(residual(matrix, solution(*solver_, matrix, b), b), 1e-12);
+  EXPECT_LE(residual(matrix, solution(*solver_, matrix, b), b), within(1e-12));
 }
 
 // One block of columns, from narrower than any unit of the solver's loops to several of them.
@@ -370,7 +379,7 @@ TEST_P(EverySolver, TakesFullMatricesOfEachSize) {
     }
     const SymmetricMatrix matrix = compressed(rows);
     const Eigen::VectorXd b = right_side(n);
-    EXPECT_LT(residual(matrix, solution(*solver_, matrix, b), b), 1e-14) << n << " unknowns";
+    EXPECT_LE(residual(matrix, solution(*solver_, matrix, b), b), within(1e-14)) << n;
   }
 }
 
@@ -426,8 +435,16 @@ TEST_P(EverySolver, RepeatsEveryBitInTheNextSolve) {
 TEST_P(EverySolver, RefusesAnExactlySingularMatrix) {
   const SymmetricMatrix matrix =
       compressed(Rows{{{0, 1.0}, {1, -1.0}}, {{0, -1.0}, {1, 1.0}}});
-  solver_->order(matrix);
-  EXPECT_THROW(solver_->factor(matrix), SolverError);
+  EXPECT_THROW(solution(*solver_, matrix, right_side(2)), SolverError);
+}
+
+TEST_P(EverySolver, AgreesWithCholmodOnThePoresOfAPacking) {
+  const SymmetricMatrix& matrix = packing_system().matrix;
+  const Eigen::VectorXd b = right_side(matrix.size());
+  const Eigen::VectorXd reference =
+      solution(*make_solver(SolverKind::cholmod, OrderingKind::metis), matrix, b);
+  const Eigen::VectorXd x = solution(*solver_, matrix, b);
+  EXPECT_LT((x - reference).norm(), 1e-9 * reference.norm());
 }
 
 TEST_P(EverySolver, NamesTheEntryThatIsNotFinite) {
@@ -481,7 +498,7 @@ TEST_P(EverySolver, GoesOnAfterAFailedFactor) {
   solver_->factor(good);
   Eigen::VectorXd x;
   solver_->solve(Eigen::VectorXd::Ones(5), x);
-  EXPECT_NEAR(x[2], 4.5, 1e-14);
+  EXPECT_NEAR(x[2], 4.5, within(1e-14) * 10);
 }
 
 TEST_P(EverySolver, FailsSilentlyAndInOneLine) {
@@ -505,6 +522,61 @@ TEST(Cholmod, NamesTheRowThatIsNotPositive) {
   const std::string message = message_of<SolverError>([&] { solver->factor(matrix); });
   EXPECT_TRUE(contains(message, "not positive definite at row 4")) << message;
 }
+
+TEST(ConjugateGradient, NamesTheRowThatIsNotPositive) {
+  Rows rows = line(6);
+  rows[4][4] = 0.1;
+  const SymmetricMatrix matrix = compressed(rows);
+  const auto solver = make_solver(SolverKind::cg, OrderingKind::automatic);
+  solver->order(matrix);
+  const std::string message = message_of<SolverError>([&] { solver->factor(matrix); });
+  EXPECT_TRUE(contains(message, "not positive definite at row 4")) << message;
+}
+
+TEST(GaussSeidel, NamesTheRowThatIsNotPositive) {
+  Rows rows = line(6);
+  rows[4][4] = 0.0;
+  const SymmetricMatrix matrix = compressed(rows);
+  const auto solver = make_solver(SolverKind::gauss_seidel, OrderingKind::automatic);
+  solver->order(matrix);
+  const std::string message = message_of<SolverError>([&] { solver->factor(matrix); });
+  EXPECT_TRUE(contains(message, "not positive definite at row 4")) << message;
+}
+
+class IterativeSolver : public testing::TestWithParam<SolverKind> {};
+INSTANTIATE_TEST_SUITE_P(Solvers, IterativeSolver,
+                         testing::Values(SolverKind::cg, SolverKind::gauss_seidel),
+                         [](const auto& info) { return std::string(name_of(info.param)); });
+
+// The sum of the sources has nowhere to go.
+TEST_P(IterativeSolver, SaysThatItFoundNoSolution) {
+  const SymmetricMatrix matrix = lattice(4, 0.0);
+  const auto solver = make_solver(GetParam(), OrderingKind::automatic);
+  const std::string message = message_of<SolverError>(
+      [&] { solution(*solver, matrix, Eigen::VectorXd::Ones(matrix.size())); });
+  EXPECT_TRUE(contains(message, "no solution after") ||
+              contains(message, "not positive definite")) << message;
+}
+
+TEST_P(IterativeSolver, TakesNoOrdering) {
+  for (const OrderingKind ordering :
+       {OrderingKind::geometric, OrderingKind::metis, OrderingKind::amd}) {
+    EXPECT_THROW(make_solver(GetParam(), ordering), InputError);
+  }
+}
+
+TEST_P(IterativeSolver, GivesZeroForZero) {
+  const auto solver = make_solver(GetParam(), OrderingKind::automatic);
+  EXPECT_TRUE(solution(*solver, lattice(4), Eigen::VectorXd::Zero(64)).isZero(0.0));
+}
+
+#ifndef PFV_WITH_MUMPS
+TEST(Mumps, IsRefusedByABuildWithoutIt) {
+  const std::string message = message_of<InputError>(
+      [] { make_solver(SolverKind::mumps, OrderingKind::automatic); });
+  EXPECT_TRUE(contains(message, "PFV_WITH_MUMPS")) << message;
+}
+#endif
 
 // Rounding leaves a last pivot of either sign; both signs must be refused.
 TEST(Cholmod, RefusesLatticesWithoutAnyImposedPressure) {

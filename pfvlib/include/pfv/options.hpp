@@ -10,11 +10,14 @@ namespace pfv {
 /// spheres where they do not.
 enum class ConductanceLaw { hydraulic_radius, effective_radius, open_throat };
 
-/// Direct solvers, all behind Amesos2. `automatic` is cholmod; klu2 is the plain reference.
-enum class SolverKind { automatic, cholmod, klu2 };
+/// Direct solvers behind Amesos2: cholmod (`automatic`), klu2 (the plain reference), mumps (where the
+/// build has it: CMake's PFV_WITH_MUMPS). Iterative ones: cg, conjugate gradients with incomplete
+/// Cholesky; gauss_seidel with over-relaxation.
+enum class SolverKind { automatic, cholmod, klu2, mumps, cg, gauss_seidel };
 
 /// Fill-reducing ordering: nested dissection of the pore centres in space (`automatic`) or of the
-/// graph by METIS, or minimum degree; klu2 has its own (amd) and refuses another.
+/// graph by METIS, or minimum degree: cholmod's. The other solvers order themselves or not at all and
+/// refuse a choice (klu2 takes amd, its own).
 enum class OrderingKind { automatic, geometric, metis, amd };
 
 /// How a throat's domain is parted among pores and spheres. `signed_angles`: signed volumes and solid

@@ -27,9 +27,12 @@ constexpr std::array<Named<ConductanceLaw>, 3> conductance_laws{
      {ConductanceLaw::open_throat, "open_throat"}}};
 constexpr std::array<Named<Partition>, 2> partitions{
     {{Partition::signed_angles, "signed"}, {Partition::yade, "yade"}}};
-constexpr std::array<Named<SolverKind>, 3> solvers{{{SolverKind::automatic, "auto"},
+constexpr std::array<Named<SolverKind>, 6> solvers{{{SolverKind::automatic, "auto"},
                                                     {SolverKind::cholmod, "cholmod"},
-                                                    {SolverKind::klu2, "klu2"}}};
+                                                    {SolverKind::klu2, "klu2"},
+                                                    {SolverKind::mumps, "mumps"},
+                                                    {SolverKind::cg, "cg"},
+                                                    {SolverKind::gauss_seidel, "gauss_seidel"}}};
 constexpr std::array<Named<OrderingKind>, 4> orderings{{{OrderingKind::automatic, "auto"},
                                                         {OrderingKind::geometric, "geometric"},
                                                         {OrderingKind::metis, "metis"},

@@ -17,8 +17,8 @@ namespace {
 constexpr double lost_pivot = 1e-12;
 
 /// Keeps CHOLMOD from opening a team of four threads for each supernode, as Debian's build does
-/// whatever OMP_NUM_THREADS says: supernodes are too small to gain from it, and waiting threads take
-/// the cores of the other ranks.
+/// whatever OMP_NUM_THREADS says: supernodes are too small to gain from it, and waiting threads
+/// take the cores of the other ranks.
 class OneThread {
  public:
   OneThread() { omp_set_max_active_levels(0); }

@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 #include "solve/amesos2_solver.hpp"
+#include "solve/iterative_solvers.hpp"
 
 namespace pfv {
 
@@ -24,20 +25,34 @@ SolverKind resolved(SolverKind solver) {
 
 OrderingKind resolved(SolverKind solver, OrderingKind ordering) {
   if (ordering != OrderingKind::automatic) return ordering;
-  return resolved(solver) == SolverKind::klu2 ? OrderingKind::amd : OrderingKind::geometric;
+  if (resolved(solver) == SolverKind::cholmod) return OrderingKind::geometric;
+  return resolved(solver) == SolverKind::klu2 ? OrderingKind::amd : OrderingKind::automatic;
 }
 
 void check(SolverKind solver, OrderingKind ordering) {
-  const bool orders_itself = ordering == OrderingKind::automatic || ordering == OrderingKind::amd;
-  if (resolved(solver) == SolverKind::klu2 && !orders_itself) {
-    throw InputError(std::string("the solver klu2 has an ordering of its own and takes no ") +
-                     name_of(ordering) + "; use the ordering amd or auto, or the solver cholmod");
+  const SolverKind kind = resolved(solver);
+#ifndef PFV_WITH_MUMPS
+  if (kind == SolverKind::mumps) {
+    throw InputError("this build has no solver mumps; configure it with -DPFV_WITH_MUMPS=ON, or "
+                     "use the solver cholmod");
   }
+#endif
+  if (kind == SolverKind::cholmod || ordering == OrderingKind::automatic) return;
+  if (kind == SolverKind::klu2 && ordering == OrderingKind::amd) return;
+  throw InputError(std::string("the solver ") + name_of(kind) + " takes no ordering " +
+                   name_of(ordering) + "; use " +
+                   (kind == SolverKind::klu2 ? "the ordering amd (its own) or auto" :
+                                               "the ordering auto") +
+                   ", or the solver cholmod");
 }
 
 std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering) {
   check(solver, ordering);
-  return make_amesos2_solver(resolved(solver), ordering);
+  switch (resolved(solver)) {
+    case SolverKind::cg: return std::make_unique<ConjugateGradient>();
+    case SolverKind::gauss_seidel: return std::make_unique<GaussSeidel>();
+    default: return make_amesos2_solver(resolved(solver), ordering);
+  }
 }
 
 }  // namespace pfv

@@ -23,11 +23,11 @@ struct SymmetricMatrix {
 /// r = A x.
 Eigen::VectorXd multiply(const SymmetricMatrix& matrix, const Eigen::VectorXd& x);
 
-/// One direct solver. Call order: order, factor (again after new values on the same pattern),
+/// One solver. Call order: order, factor (again after new values on the same pattern),
 /// solve as often as there are right-hand sides. No unknowns are fine: nothing is done.
-/// Same matrix and b, same bytes. Prints nothing. Every method throws SolverError, one line with the
-/// solver's name: a call out of order, a matrix that is singular, not positive definite (cholmod) or
-/// not finite, a solution that is not finite, no memory.
+/// Same matrix and b, same bytes. Prints nothing. Every method throws SolverError, one line with
+/// the solver's name: a call out of order, a matrix that is singular, not positive definite
+/// (cholmod) or not finite, a solution that is not finite, no memory.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;

@@ -7,13 +7,14 @@
 
 namespace pfv {
 
-/// The permutation for a choice of the user: entry k is the row that is eliminated k-th. Empty for amd,
-/// which CHOLMOD does itself. `automatic` is geometric where there are coordinates, else metis.
+/// The permutation for a choice of the user: entry k is the row that is eliminated k-th. Empty for
+/// amd, which CHOLMOD does itself. `automatic` is geometric where there are coordinates, else
+/// metis.
 std::vector<int> fill_reducing_ordering(OrderingKind kind, const SymmetricMatrix& matrix,
                                         const Eigen::Matrix3Xd& coordinates);
 
-/// METIS' multilevel nested dissection. Depends on the pattern alone, and the same pattern gives the
-/// same permutation. Throws SolverError when METIS fails.
+/// METIS' multilevel nested dissection. Depends on the pattern alone, and the same pattern gives
+/// the same permutation. Throws SolverError when METIS fails.
 std::vector<int> metis_ordering(const SymmetricMatrix& matrix);
 
 /// Nested dissection in space: a part is cut across its long directions, the separator is

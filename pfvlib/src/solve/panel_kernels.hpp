@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The inner loops of the triangular solves. They read each entry of L once, in the order in which it
-// lies in memory, so that memory bandwidth is what bounds them.
+// The inner loops of the triangular solves. They read each entry of L once, in the order in which
+// it lies in memory, so that memory bandwidth is what bounds them.
 #pragma once
 
 #include "solve/supernodal_solve.hpp"

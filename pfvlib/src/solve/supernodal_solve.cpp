@@ -95,7 +95,8 @@ void SupernodalSolve::analyze(const cholmod_factor& factor) {
   entries_ = static_cast<std::size_t>(value);
 }
 
-// A panel never ends behind the columns that it is packed from, so no column is lost before its turn.
+// A panel never ends behind the columns that it is packed from, so no column is lost before its
+// turn.
 void SupernodalSolve::pack(cholmod_factor& factor) {
   const auto* first_column = static_cast<const int*>(factor.super);
   const auto* rows_begin = static_cast<const int*>(factor.pi);

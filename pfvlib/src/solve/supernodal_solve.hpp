@@ -9,8 +9,8 @@
 namespace pfv {
 
 /// Neighbouring columns of L that share the rows below their triangle. Its values, one after the
-/// other: the reciprocal pivots; the rest of the triangle by columns; the rows below it in blocks of
-/// `block_rows` (the last one may have fewer), each block by columns.
+/// other: the reciprocal pivots; the rest of the triangle by columns; the rows below it in blocks
+/// of `block_rows` (the last one may have fewer), each block by columns.
 struct Panel {
   int first_column;
   int columns;               ///< at most `panel_width`
@@ -24,8 +24,8 @@ constexpr int panel_width = 8;
 constexpr int block_rows = 4;
 
 /// Forward and backward substitution with the supernodal L of CHOLMOD, packed so that both stream
-/// through it. CHOLMOD's own solve calls the BLAS for each supernode, too small for that to pay, and
-/// reads the unused upper half of each diagonal block.
+/// through it. CHOLMOD's own solve calls the BLAS for each supernode, too small for that to pay,
+/// and reads the unused upper half of each diagonal block.
 class SupernodalSolve {
  public:
   /// How many values beyond CHOLMOD's the array of L must have room for: a block that is not full
