@@ -109,10 +109,11 @@ TEST(NineSpheres, ForceOnTheSmallSphereIsTheStokesForceFromDOverD04On) {
     if (d_over_D == 0.0) continue;
     const Solution s = solve(d_over_D, wall_of(row));
     const double ratio = s.forces.total(2, 8) / number(row, "small_total");
-    if (d_over_D < 0.3)
+    if (d_over_D < 0.3) {
       EXPECT_NEAR(ratio, 0.7103, 6e-4);
-    else
+    } else {
       EXPECT_NEAR(ratio, 1.0, 0.0725) << "d/D " << d_over_D;
+    }
   }
 }
 

@@ -118,8 +118,9 @@ TEST(PoresOnSeveralFaces, TakeTheFirstFluxFace) {
   for (const int p : pores_on(r.network, Face::xlo))
     if (!(r.network.pore_faces[p] >> static_cast<int>(Face::zhi) & 1)) shared = r.pressures[p];
   for (const int p : pores_on(r.network, Face::xlo))
-    if (!(r.network.pore_faces[p] >> static_cast<int>(Face::zhi) & 1))
+    if (!(r.network.pore_faces[p] >> static_cast<int>(Face::zhi) & 1)) {
       EXPECT_EQ(r.pressures[p], shared);  // on ylo, too
+    }
 }
 
 pfv::Patch patch(Face face, std::array<double, 4> rectangle, Boundary boundary) {

@@ -63,7 +63,9 @@ TEST(Fields, ThroatFluxesLeaveEachInnerPoreBalanced) {
   double outflow = 0.0;
   for (int p = 0; p < network.pores(); ++p) {
     const bool top = network.pore_faces[p] >> 5 & 1, bottom = network.pore_faces[p] >> 4 & 1;
-    if (!top && !bottom) EXPECT_NEAR(net[p], 0.0, 1e-12 * flow.report().inflow);
+    if (!top && !bottom) {
+      EXPECT_NEAR(net[p], 0.0, 1e-12 * flow.report().inflow);
+    }
     if (top) outflow += net[p];
   }
   EXPECT_NEAR(outflow / flow.report().outflow, 1.0, 1e-11);
