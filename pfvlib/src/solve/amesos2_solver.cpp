@@ -7,6 +7,7 @@
 #include <Amesos2_config.h>
 #define HAVE_AMESOS2_MUMPS
 #include <Teuchos_DefaultMpiComm.hpp>
+#include <iostream>
 #endif
 #include "solve/amesos2_cholmod.hpp"
 #include "solve/checked_solver.hpp"
@@ -74,6 +75,21 @@ class MpiSession {
   }
   bool is_ours_ = false;
 };
+
+/// Keeps MUMPS' adapter from writing its error codes to standard error beside the exception.
+class QuietErrors {
+ public:
+  QuietErrors() : buffer_(std::cerr.rdbuf(nullptr)) {}
+  ~QuietErrors() {
+    std::cerr.rdbuf(buffer_);
+    std::cerr.clear();
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  std::streambuf* buffer_;
+};
 #endif
 
 /// Of this rank alone.
@@ -114,13 +130,11 @@ class Amesos2Solver final : public CheckedSolver {
     solution_ = Teuchos::rcp(new Vector(matrix_->getDomainMap(), 1));
     if (kind() == SolverKind::klu2) {
       amesos2_ = Amesos2::create<Matrix, Vector>("KLU2", matrix_);
-#ifdef PFV_WITH_MUMPS
-    } else if (kind() == SolverKind::mumps) {
-      amesos2_ = Amesos2::create<Matrix, Vector>("MUMPS", matrix_);
-#endif
-    } else {
+    } else if (kind() == SolverKind::cholmod) {
       amesos2_ = Teuchos::rcp(new CholmodSupernodal<Matrix, Vector>(
           matrix_, fill_reducing_ordering(ordering_, matrix, coordinates)));
+    } else {
+      return;
     }
     amesos2_->symbolicFactorization();
   }
@@ -136,6 +150,9 @@ class Amesos2Solver final : public CheckedSolver {
   void factor_values(const SymmetricMatrix& matrix) override {
     std::copy(matrix.value.begin(), matrix.value.end(),
               matrix_->getLocalMatrixDevice().values.data());
+#ifdef PFV_WITH_MUMPS
+    if (kind() == SolverKind::mumps) return factor_with_mumps();
+#endif
     amesos2_->numericFactorization();
   }
 
@@ -145,6 +162,16 @@ class Amesos2Solver final : public CheckedSolver {
     const auto solution = solution_->getData(0);
     std::copy(solution.begin(), solution.end(), x.begin());
   }
+
+#ifdef PFV_WITH_MUMPS
+  /// The adapter keeps the values that it saw when it ordered: it must begin anew.
+  void factor_with_mumps() {
+    const QuietErrors quiet;
+    amesos2_ = Amesos2::create<Matrix, Vector>("MUMPS", matrix_);
+    amesos2_->symbolicFactorization();
+    amesos2_->numericFactorization();
+  }
+#endif
 
   // First, so that Kokkos outlives what it allocated.
   std::shared_ptr<KokkosSession> kokkos_ = KokkosSession::shared();
