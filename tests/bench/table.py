@@ -54,7 +54,8 @@ def main():
     for phase, by_size in times.items():
         name = phase.replace("_", " ")
         text += f"| {name} | " + " | ".join(f"{by_size[size]:.3g}" for size in SIZES) + " |\n"
-    text += "\n`rebuild` is everything from a packing to forces, `step` what a kept network costs.\n"
+    text += "\n`rebuild` is everything from a packing to forces, `step` what a kept network costs; both " \
+            "use the\nautomatic ordering, which is geometric, while the rows of the solver alone show METIS.\n"
     text += "\n## `pfv solve --repeat 20`\n\n" + head + rule
     rows = (("pores", lambda r: r["pores"]), ("unknowns", lambda r: r["unknowns"]),
             ("whole solve, CPU ms", lambda r: f"{1e3 * r['seconds']['total']:.3g}"),
