@@ -2,6 +2,7 @@
 // Staged (Runge-Kutta-Chebyshev) coupling: grains that only the fluid brakes.
 #include "pfv/pfv.hpp"
 #include "physics/chebyshev_stages.hpp"
+#include "support/boxes.hpp"
 #include "support/dense_packing.hpp"
 
 #include <cmath>
@@ -12,11 +13,7 @@ namespace pfv {
 namespace {
 
 Box drained() {
-  Box box;
-  for (FaceCondition& face : box.faces) face.wall = Wall::symmetry;
-  box[Face::zlo].boundary = Boundary::pressure(0.0);
-  box[Face::zhi].boundary = Boundary::pressure(0.0);
-  return box;
+  return ::support::pressure_box(Face::zlo, 0.0, Face::zhi, 0.0, Wall::symmetry);
 }
 
 /// y' = -lambda y over one step dt with z = dt lambda, relative to y_0.
