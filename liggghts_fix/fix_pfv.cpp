@@ -300,12 +300,7 @@ void FixPfv::apply_forces() {
 
 void FixPfv::push_meshes() {
   if (comm->me != 0) return;
-  std::array<Eigen::Vector3d, 6> forces;
-  for (int number = 0; number < 6; ++number) {
-    const pfv::FaceResult& face = flow_->faces()[number];
-    forces[number] = face.force_pressure + face.force_viscous;
-  }
-  faces_.push_meshes(forces);
+  faces_.push_meshes(flow_->face_forces());
 }
 
 // ------------------------------------------------------------------------------- changes, restart

@@ -126,7 +126,7 @@ TEST(CubicLattices, GiveForcesWithTheirOwnSymmetry) {
         const pfv::Forces& forces = flow.evaluate(packing.view());
         EXPECT_TRUE(forces.total.allFinite());
         EXPECT_EQ(expect_symmetric_forces(packing, forces.total), operations);
-        EXPECT_LT(std::abs(flow.report().mass_error), 1e-12);
+        EXPECT_LT(std::abs(flow.report().mass_error), 2e-15);
         EXPECT_LT(flow.report().force_balance_error, 1e-14);
       }
 }
@@ -174,7 +174,7 @@ TEST(TurnedLattices, MergeAndBalanceLikeStraightOnes) {
     const pfv::Forces forces = exact.evaluate(packing.view());
     EXPECT_TRUE(forces.total.allFinite());
     EXPECT_GT(exact.report().counts.merged_pores, 0);
-    EXPECT_LT(std::abs(exact.report().mass_error), 1e-11);
+    EXPECT_LT(std::abs(exact.report().mass_error), 2e-15);
     EXPECT_LT(exact.report().force_balance_error, 1e-14);
     const pfv::PackingArrays moved = jittered(packing, 1e-12);
     pfv::Flow other(upward_box(pfv::Wall::no_slip), viscosity_one(), hydraulic_radius());

@@ -19,7 +19,7 @@ pfv::Report solve(const pfv::PackingArrays& packing) {
   EXPECT_GE(flow.pore_pressures().minCoeff(), -1e-9);
   EXPECT_LE(flow.pore_pressures().maxCoeff(), 1.0 + 1e-9);
   const pfv::Report report = flow.report();
-  EXPECT_LT(std::abs(report.mass_error), 1e-9);
+  EXPECT_LT(std::abs(report.mass_error), 2e-15);
   EXPECT_LT(report.force_balance_error, 1e-13);
   EXPECT_GT(report.porosity, 0.0);
   EXPECT_LT(report.porosity, 1.0);

@@ -139,7 +139,7 @@ TEST(StagedStep, ForcesAndVolumesOfTheStepBalance) {
   Braked run;
   run.flow.step_staged(run.packing.view(), 50.0 * run.limit(), run.dynamics());
   const Report report = run.flow.report();
-  EXPECT_LT(std::abs(report.mass_error), 1e-10);
+  EXPECT_LT(std::abs(report.mass_error), 1e-14);
   EXPECT_LT(report.force_balance_error, 1e-13);
 }
 

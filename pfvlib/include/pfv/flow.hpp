@@ -105,7 +105,11 @@ class Flow {
 
   // results of the last call
   const Forces& forces() const;
+  /// Flux and force of each face. Cost, once a call: one solve (which takes the fluxes beyond the
+  /// round-off of the pressures) and two passes over the throats.
   const std::array<FaceResult, 6>& faces() const;
+  /// Force of the fluid on each face alone, N: cheap enough for every step.
+  std::array<Eigen::Vector3d, 6> face_forces() const;
   /// Pa, one entry a pore of `network()`.
   const Eigen::VectorXd& pore_pressures() const;
   /// Pressure of the tetrahedron that contains the place (m). Throws InputError outside the box.
@@ -127,7 +131,7 @@ class Flow {
   const PoreNetwork& network() const;
   /// Conductance g/L of each throat, m³/(Pa s).
   const std::vector<double>& throat_conductances() const;
-  /// Flow rate of each throat, from its first pore to its second, m³/s.
+  /// Flow rate of each throat, from its first pore to its second, m³/s. Cost: as faces().
   std::vector<double> throat_fluxes() const;
   /// Volume of each pore's fluid, m³.
   Eigen::VectorXd pore_volumes() const;

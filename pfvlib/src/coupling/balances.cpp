@@ -11,14 +11,14 @@ namespace pfv {
 namespace {
 
 /// Flow rate into the box through each pore: what its throats carry away, what fills its growing
-/// volume and what its compression stores. Meaningful for pores on an open boundary.
-Eigen::VectorXd pore_inflows(const FlowData& flow) {
+/// volume and what its compression stores. 0 where nothing is imposed, up to what the solve left.
+Eigen::VectorXd pore_inflows(const FlowData& flow, const std::vector<double>& fluxes,
+                             const Eigen::VectorXd& correction) {
   const PoreNetwork& network = flow.built->network;
   Eigen::VectorXd inflow = flow.rates;
   if (flow.storage.size() > 0)
-    inflow.array() +=
-        flow.storage.array() * (flow.pressures.array() - flow.previous_pressures.array());
-  const std::vector<double> fluxes = throat_fluxes(flow);
+    inflow.array() += flow.storage.array() * (flow.pressures.array() -
+                                              flow.previous_pressures.array() + correction.array());
   for (int t = 0; t < network.throats(); ++t) {
     inflow[network.throat_pores[t][0]] += fluxes[t];
     inflow[network.throat_pores[t][1]] -= fluxes[t];
@@ -26,14 +26,84 @@ Eigen::VectorXd pore_inflows(const FlowData& flow) {
   return inflow;
 }
 
+/// Fluxes from the differences of the pressures and of their correction: summed before the difference
+/// is taken, the correction would be rounded away.
+std::vector<double> fluxes_of(const FlowData& flow, const Eigen::VectorXd& correction) {
+  const PoreNetwork& network = flow.built->network;
+  std::vector<double> fluxes(network.throats());
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    fluxes[t] =
+        flow.built->conductances.value[t] *
+        (driving_pressure(network, t, flow.relative_pressures, flow.solved_box.pressure_gradient) +
+         (correction[i] - correction[j]));
+  }
+  return fluxes;
+}
+
+/// What is missing in the continuity of each pore, summed over the pores of a flux boundary.
+Eigen::VectorXd continuity_defect(const FlowData& flow) {
+  const Unknowns& unknowns = flow.built->unknowns;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flow.built->network.pores());
+  Eigen::VectorXd defect = -pore_inflows(flow, fluxes_of(flow, none), none);
+  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b) {
+    const int unknown = unknowns.of_boundary[b];
+    if (unknown < 0) continue;
+    const auto first = std::find(unknowns.of_pore.begin(), unknowns.of_pore.end(), unknown);
+    defect[first - unknowns.of_pore.begin()] +=
+        boundary_of(flow.solved_box, static_cast<int>(b)).value;
+  }
+  return defect;
+}
+
+/// What the digits of a double leave out of the pressures (Pa): one solve on the kept factor for the
+/// continuity defect, which is exact to the round-off of the fluxes because it is taken from
+/// pressure differences. Where a pressure is 1e6 times the differences to its neighbours, the fluxes
+/// of the rounded pressures would miss the balance by 1e6 times the machine precision. A larger
+/// correction than that is no round-off but a solve that went wrong: it is left out, and the
+/// balances show it.
+Eigen::VectorXd pressure_correction(const FlowData& flow) {
+  constexpr double of_round_off = 1e-9;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flow.built->network.pores());
+  if (flow.built->unknowns.count == 0) return none;
+  Eigen::VectorXd correction = homogeneous_pressures(*flow.built, continuity_defect(flow));
+  const bool rounding = correction.cwiseAbs().maxCoeff() <=
+                        of_round_off * flow.relative_pressures.cwiseAbs().maxCoeff();
+  return rounding ? correction : none;
+}
+
+/// Flow rate (m³/s) into the box through each boundary contact.
+std::vector<double> contact_inflows(const FlowData& flow, const Eigen::VectorXd& inflow) {
+  const auto& contacts = flow.built->boundaries.contacts;
+  const auto carries = [&](const PoreBoundaries::Contact& contact) {
+    const Boundary::Kind kind = boundary_of(flow.solved_box, contact.boundary).kind;
+    const int unknown = flow.built->unknowns.of_pore[contact.pore];
+    if (unknown == Unknowns::imposed) return kind == Boundary::Kind::pressure;
+    return kind == Boundary::Kind::flux &&
+           flow.built->unknowns.of_boundary[contact.boundary] == unknown;
+  };
+  std::vector<double> result(contacts.size(), 0.0);
+  for (std::size_t first = 0; first < contacts.size();) {
+    std::size_t last = first;
+    double area = 0.0;
+    for (; last < contacts.size() && contacts[last].pore == contacts[first].pore; ++last)
+      if (carries(contacts[last])) area += flow.built->base_area[last];
+    // a pore on several open faces: by its base on each
+    for (std::size_t c = first; c < last; ++c)
+      if (carries(contacts[c]) && area > 0.0)
+        result[c] = inflow[contacts[c].pore] * flow.built->base_area[c] / area;
+    first = last;
+  }
+  return result;
+}
+
 struct Totals {
   double inflow = 0.0, outflow = 0.0, gross = 0.0;
 };
 
-Totals boundary_totals(const FlowData& flow) {
-  const std::vector<double> inflows = contact_inflows(flow);
+Totals boundary_totals(const FlowData& flow, const std::vector<double>& inflows) {
   const auto& contacts = flow.built->boundaries.contacts;
-  std::vector<double> of_boundary(6 + flow.box.patches.size(), 0.0);
+  std::vector<double> of_boundary(6 + flow.solved_box.patches.size(), 0.0);
   Totals totals;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     of_boundary[contacts[c].boundary] += inflows[c];
@@ -54,36 +124,39 @@ double mass_error(const Totals& totals, double volume_rate, double storage_rate)
 }
 
 /// -mu U . g / g² for the macroscopic gradient g of a periodic box.
-std::optional<double> permeability_along_gradient(const FlowData& flow) {
-  const Eigen::Vector3d& gradient = flow.box.pressure_gradient;
+std::optional<double> permeability_along_gradient(const FlowData& flow,
+                                                  const std::vector<double>& fluxes) {
+  const Eigen::Vector3d& gradient = flow.solved_box.pressure_gradient;
   const Eigen::Vector3d velocity =
-      superficial_velocity(flow.built->network, throat_fluxes(flow), flow.box.volume());
+      superficial_velocity(flow.built->network, fluxes, flow.solved_box.volume());
   return -flow.fluid.viscosity * velocity.dot(gradient) / gradient.squaredNorm();
 }
 
-/// mu Q L / (dp S) between two opposite open faces (method: Darcy's law); absent where the flow is not
-/// steady or not one-dimensional.
-std::optional<double> permeability(const FlowData& flow, const Totals& totals) {
-  if (flow.moving || flow.storage.size() > 0 || !flow.box.patches.empty()) return {};
-  if (!flow.box.pressure_gradient.isZero(0.0)) return permeability_along_gradient(flow);
+/// mu Q L / (dp S) between two opposite open faces (method: Darcy's law); absent where the flow is
+/// not steady or not one-dimensional.
+std::optional<double> permeability(const FlowData& flow, const Totals& totals,
+                                   const std::vector<double>& fluxes) {
+  if (flow.moving || flow.storage.size() > 0 || !flow.solved_box.patches.empty()) return {};
+  if (!flow.solved_box.pressure_gradient.isZero(0.0))
+    return permeability_along_gradient(flow, fluxes);
   int open_axis = -1, open = 0;
   for (const Face face : all_faces) {
-    const Boundary& boundary = flow.box[face].boundary;
+    const Boundary& boundary = flow.solved_box[face].boundary;
     if (boundary.kind == Boundary::Kind::sealed) continue;
     if (boundary.profile) return {};
     ++open;
     if (open == 1) open_axis = axis_of(face);
     if (axis_of(face) != open_axis) return {};
   }
-  if (open != 2 || flow.box.periodic[open_axis]) return {};
+  if (open != 2 || flow.solved_box.periodic[open_axis]) return {};
   std::array<double, 2> pressure{0.0, 0.0};
   for (const auto& contact : flow.built->boundaries.contacts)
     if (contact.face / 2 == open_axis)
       pressure[contact.face % 2] = flow.relative_pressures[contact.pore];
   const double difference = std::abs(pressure[0] - pressure[1]);
   if (!(difference > 0.0)) return {};
-  const double length = flow.box.upper[open_axis] - flow.box.lower[open_axis];
-  const double area = flow.box.area(static_cast<Face>(2 * open_axis));
+  const double length = flow.solved_box.upper[open_axis] - flow.solved_box.lower[open_axis];
+  const double area = flow.solved_box.area(static_cast<Face>(2 * open_axis));
   const double rate = 0.5 * (totals.inflow + totals.outflow);
   return flow.fluid.viscosity * rate * length / (difference * area);
 }
@@ -92,23 +165,23 @@ std::optional<double> permeability(const FlowData& flow, const Totals& totals) {
 /// them from their images; grains and walls carry it.
 Eigen::Vector3d driving_force(const FlowData& flow) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  if (flow.box.pressure_gradient.isZero(0.0)) return sum;
+  if (flow.solved_box.pressure_gradient.isZero(0.0)) return sum;
   const PoreNetwork& network = flow.built->network;
   for (int t = 0; t < network.throats(); ++t)
-    sum += flow.box.pressure_gradient.dot(network.throat_offset(t)) *
+    sum += flow.solved_box.pressure_gradient.dot(network.throat_offset(t)) *
            flow.built->throats.area[t] * flow.built->throats.normal.col(t);
   return sum;
 }
 
-double force_balance_error(const FlowData& flow) {
+double force_balance_error(const FlowData& flow, const std::array<FaceResult, 6>& faces) {
   if (flow.fluid_forces.cols() == 0) return 0.0;
   const int spheres = flow.built->grains.spheres.size();
   Eigen::Vector3d sum = flow.fluid_forces.leftCols(spheres).rowwise().sum();
   double largest_area = 0.0;
   for (const Face face : all_faces) {
-    const FaceResult& result = flow.faces[static_cast<int>(face)];
+    const FaceResult& result = faces[static_cast<int>(face)];
     sum += result.force_pressure + result.force_viscous;
-    largest_area = std::max(largest_area, flow.box.area(face));
+    largest_area = std::max(largest_area, flow.solved_box.area(face));
   }
   const double largest_pressure =
       flow.pressures.size() > 0 ? flow.pressures.cwiseAbs().maxCoeff() : 0.0;
@@ -147,13 +220,38 @@ void fill_geometry(Report& report, FlowData& flow) {
 
 }  // namespace
 
-std::vector<double> throat_fluxes(const FlowData& flow) {
-  const PoreNetwork& network = flow.built->network;
-  std::vector<double> fluxes(network.throats());
-  for (int t = 0; t < network.throats(); ++t)
-    fluxes[t] = flow.built->conductances.value[t] *
-                driving_pressure(network, t, flow.relative_pressures, flow.box.pressure_gradient);
-  return fluxes;
+std::array<FaceResult, 6> face_forces(const FlowData& flow) {
+  std::array<FaceResult, 6> faces;
+  const auto& contacts = flow.built->boundaries.contacts;
+  const int spheres = flow.built->grains.spheres.size();
+  std::array<double, 6> relative{};
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    relative[contacts[c].face] +=
+        flow.relative_pressures[contacts[c].pore] * flow.built->base_area[c];
+  const Eigen::Vector3d edges = flow.built->grains.spheres.edges;
+  for (const Face face : all_faces) {
+    const int f = static_cast<int>(face), axis = axis_of(face);
+    const double area = edges[(axis + 1) % 3] * edges[(axis + 2) % 3];
+    faces[f].force_pressure = (relative[f] + flow.reference * area) * outward_normal(face);
+    if (flow.fluid_forces.cols() > 0) faces[f].force_viscous = flow.fluid_forces.col(spheres + f);
+  }
+  return faces;
+}
+
+const Balance& FlowData::balance() {
+  require_result();
+  if (!balance_) {
+    Balance fresh;
+    fresh.correction = pressure_correction(*this);
+    fresh.throat_fluxes = fluxes_of(*this, fresh.correction);
+    fresh.contact_inflows =
+        contact_inflows(*this, pore_inflows(*this, fresh.throat_fluxes, fresh.correction));
+    fresh.faces = face_forces(*this);
+    for (std::size_t c = 0; c < fresh.contact_inflows.size(); ++c)
+      fresh.faces[built->boundaries.contacts[c].face].flux += fresh.contact_inflows[c];
+    balance_ = std::move(fresh);
+  }
+  return *balance_;
 }
 
 Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vector<double>& fluxes,
@@ -169,14 +267,15 @@ Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vect
 
 /// One solve an axis, on the kept factor, for a unit gradient and no other drive.
 std::optional<Eigen::Matrix3d> permeability_tensor(const FlowData& flow) {
-  if (!flow.box.any_periodic() || flow.moving || flow.storage.size() > 0) return {};
-  for (const auto& contact : flow.built->boundaries.contacts)  // a pressure there excludes a gradient
-    if (boundary_of(flow.box, contact.boundary).kind != Boundary::Kind::sealed) return {};
+  if (!flow.solved_box.any_periodic() || flow.moving || flow.storage.size() > 0) return {};
+  // a pressure on another face excludes a gradient
+  for (const auto& contact : flow.built->boundaries.contacts)
+    if (boundary_of(flow.solved_box, contact.boundary).kind != Boundary::Kind::sealed) return {};
   const BuiltNetwork& built = *flow.built;
   const PoreNetwork& network = built.network;
   Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
-    if (!flow.box.periodic[axis]) continue;
+    if (!flow.solved_box.periodic[axis]) continue;
     const Eigen::Vector3d gradient = Eigen::Vector3d::Unit(axis);
     const Eigen::VectorXd pressures = homogeneous_pressures(
         built, gradient_sources(network, built.conductances.value, gradient));
@@ -185,78 +284,34 @@ std::optional<Eigen::Matrix3d> permeability_tensor(const FlowData& flow) {
       fluxes[t] =
           built.conductances.value[t] * driving_pressure(network, t, pressures, gradient);
     tensor.col(axis) = -flow.fluid.viscosity *
-                       superficial_velocity(network, fluxes, flow.box.volume());
+                       superficial_velocity(network, fluxes, flow.solved_box.volume());
   }
   for (int axis = 0; axis < 3; ++axis)
-    if (!flow.box.periodic[axis]) tensor.row(axis).setZero();
+    if (!flow.solved_box.periodic[axis]) tensor.row(axis).setZero();
   return tensor;
-}
-
-std::vector<double> contact_inflows(const FlowData& flow) {
-  const auto& contacts = flow.built->boundaries.contacts;
-  const Eigen::VectorXd inflow = pore_inflows(flow);
-  const auto carries = [&](const PoreBoundaries::Contact& contact) {
-    const Boundary::Kind kind = boundary_of(flow.box, contact.boundary).kind;
-    const int unknown = flow.built->unknowns.of_pore[contact.pore];
-    if (unknown == Unknowns::imposed) return kind == Boundary::Kind::pressure;
-    return kind == Boundary::Kind::flux &&
-           flow.built->unknowns.of_boundary[contact.boundary] == unknown;
-  };
-  std::vector<double> result(contacts.size(), 0.0);
-  for (std::size_t first = 0; first < contacts.size();) {
-    std::size_t last = first;
-    double area = 0.0;
-    for (; last < contacts.size() && contacts[last].pore == contacts[first].pore; ++last)
-      if (carries(contacts[last])) area += flow.built->base_area[last];
-    // a pore on several open faces: by its base on each
-    for (std::size_t c = first; c < last; ++c)
-      if (carries(contacts[c]) && area > 0.0)
-        result[c] = inflow[contacts[c].pore] * flow.built->base_area[c] / area;
-    first = last;
-  }
-  return result;
-}
-
-std::array<FaceResult, 6> face_results(const FlowData& flow) {
-  std::array<FaceResult, 6> faces;
-  const auto& contacts = flow.built->boundaries.contacts;
-  const std::vector<double> inflows = contact_inflows(flow);
-  const int spheres = flow.built->grains.spheres.size();
-  std::array<double, 6> relative{};
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    faces[contacts[c].face].flux += inflows[c];
-    relative[contacts[c].face] +=
-        flow.relative_pressures[contacts[c].pore] * flow.built->base_area[c];
-  }
-  const Eigen::Vector3d edges = flow.built->grains.spheres.edges;
-  for (const Face face : all_faces) {
-    const int f = static_cast<int>(face), axis = axis_of(face);
-    const double area = edges[(axis + 1) % 3] * edges[(axis + 2) % 3];
-    faces[f].force_pressure = (relative[f] + flow.reference * area) * outward_normal(face);
-    if (flow.fluid_forces.cols() > 0) faces[f].force_viscous = flow.fluid_forces.col(spheres + f);
-  }
-  return faces;
 }
 
 Report make_report(FlowData& flow) {
   Report report;
   fill_geometry(report, flow);
-  const Totals totals = boundary_totals(flow);
+  const Balance& balance = flow.balance();
+  const Totals totals = boundary_totals(flow, balance.contact_inflows);
   report.inflow = totals.inflow;
   report.outflow = totals.outflow;
   report.volume_rate_sum = flow.rates.sum();
   if (flow.storage.size() > 0)
-    report.storage_rate = flow.storage.dot(flow.pressures - flow.previous_pressures);
+    report.storage_rate =
+        flow.storage.dot(flow.pressures - flow.previous_pressures + balance.correction);
   report.mass_error = mass_error(totals, report.volume_rate_sum, report.storage_rate);
-  report.permeability = permeability(flow, totals);
+  report.permeability = permeability(flow, totals, balance.throat_fluxes);
   report.permeability_tensor = permeability_tensor(flow);
   if (flow.forces.total.cols() > 0) report.force_sum = flow.forces.total.rowwise().sum();
-  report.force_balance_error = force_balance_error(flow);
+  report.force_balance_error = force_balance_error(flow, balance.faces);
   report.residual = residual(flow);
   report.solver = flow.built->solver->name();
   report.ordering = name_of(resolved(flow.options.solver, flow.options.ordering));
   report.conductance = name_of(flow.options.conductance);
-  report.faces = flow.faces;
+  report.faces = balance.faces;
   report.counts = flow.counts;
   report.seconds = flow.seconds;
   report.wall_seconds.total = flow.wall_total;

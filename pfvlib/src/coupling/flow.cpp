@@ -113,8 +113,15 @@ const Forces& Flow::forces() const {
 }
 
 const std::array<FaceResult, 6>& Flow::faces() const {
+  return data_->balance().faces;
+}
+
+std::array<Eigen::Vector3d, 6> Flow::face_forces() const {
   data_->require_result();
-  return data_->faces;
+  const std::array<FaceResult, 6> faces = pfv::face_forces(*data_);
+  std::array<Eigen::Vector3d, 6> total;
+  for (int f = 0; f < 6; ++f) total[f] = faces[f].force_pressure + faces[f].force_viscous;
+  return total;
 }
 
 const Eigen::VectorXd& Flow::pore_pressures() const {
@@ -191,8 +198,7 @@ const std::vector<double>& Flow::throat_conductances() const {
 }
 
 std::vector<double> Flow::throat_fluxes() const {
-  data_->require_result();
-  return pfv::throat_fluxes(*data_);
+  return data_->balance().throat_fluxes;
 }
 
 Eigen::VectorXd Flow::pore_volumes() const {

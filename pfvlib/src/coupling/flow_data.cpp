@@ -35,6 +35,7 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
   {
     const PhaseClock clock(seconds.total);
     solved = false;
+    balance_.reset();
     rebuild_if_stale(packing);
     assemble_and_factor(step);
     update_rates(packing);
@@ -46,8 +47,8 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
       solve_pressures(at_time);
     if (options.forces) compute_forces(packing);
     dt = step;
+    solved_box = box;
     solved = true;
-    faces = face_results(*this);
     if (advance) end_step(step);
   }
   wall_total += wall_seconds() - wall_start;

@@ -6,6 +6,15 @@
 
 namespace pfv {
 
+/// What follows from the pressures of the last call for the throats and the faces. A step does not need
+/// it, so it is made when asked for.
+struct Balance {
+  Eigen::VectorXd correction;           ///< to the pressures, beyond the digits of a double, Pa
+  std::vector<double> throat_fluxes;    ///< from the first pore of a throat to its second, m³/s
+  std::vector<double> contact_inflows;  ///< into the box through each boundary contact, m³/s
+  std::array<FaceResult, 6> faces;
+};
+
 /// The state behind Flow.
 struct FlowData {
   Box box;
@@ -35,7 +44,7 @@ struct FlowData {
   Eigen::VectorXd right_side, solution;  ///< of the unknowns
   Eigen::Matrix3Xd fluid_forces;         ///< S p: 3 x (active spheres + 6), N
   Forces forces;
-  std::array<FaceResult, 6> faces;
+  Box solved_box;  ///< the box may be another by the time that a balance is asked for
   std::vector<std::int64_t> packing_ids;
   std::vector<double> pending_pressures;  ///< from set_state, for the next network
 
@@ -44,8 +53,12 @@ struct FlowData {
                         const GrainDynamics* grains = nullptr);
   double time_step_limit(const Eigen::VectorXd& masses);
   void require_result() const;
+  /// Throws InputError without a result. Cost: one solve and a pass over the throats, once a call.
+  const Balance& balance();
 
  private:
+  std::optional<Balance> balance_;
+
   void rebuild_if_stale(const Packing& packing);
   bool needs_rebuild(const Packing& packing) const;
   void build(const Packing& packing);
@@ -64,10 +77,8 @@ struct FlowData {
   void add_strain(double step);
 };
 
-/// Flux and force on each face from the pressures of the last call.
-std::array<FaceResult, 6> face_results(const FlowData& flow);
-/// Flow rate (m³/s) into the box through each boundary contact.
-std::vector<double> contact_inflows(const FlowData& flow);
+/// Force on each face from the pressures of the last call; its flux is left 0.
+std::array<FaceResult, 6> face_forces(const FlowData& flow);
 /// Superficial velocity (m/s) through a periodic box: the sum over throats of flow rate times the way
 /// from pore to pore, over the volume.
 Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vector<double>& fluxes,
@@ -75,8 +86,6 @@ Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vect
 /// Permeability tensor (m²) along the periodic axes; absent without them, where grains move, and where
 /// other faces are open.
 std::optional<Eigen::Matrix3d> permeability_tensor(const FlowData& flow);
-/// Flow rate of each throat, from its first pore to its second, m³/s.
-std::vector<double> throat_fluxes(const FlowData& flow);
 /// Everything a report holds, from the last call.
 Report make_report(FlowData& flow);
 
