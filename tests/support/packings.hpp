@@ -4,6 +4,7 @@
 #include "pfv/box.hpp"
 #include "pfv/io.hpp"
 #include "pfv/packing.hpp"
+#include "support/data_file.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -55,7 +56,7 @@ inline pfv::PackingArrays packing_of(const std::vector<Sphere>& spheres) {
 }
 
 inline pfv::PackingArrays data_packing(const std::string& name) {
-  return pfv::read_packing(std::string(PFV_TEST_DATA) + "/" + name);
+  return pfv::read_packing(data_file(name));
 }
 
 /// Spheres placed at random one after another (random sequential addition): they neither overlap

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "support/data_file.hpp"
+
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -16,7 +18,7 @@ namespace support {
 using Row = std::map<std::string, std::string>;
 
 inline std::ifstream open_data(const std::string& name) {
-  std::ifstream file(std::string(PFV_TEST_DATA) + "/" + name);
+  std::ifstream file(data_file(name));
   if (!file) throw std::runtime_error("no test data " + name);
   return file;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
+#include "support/packings.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -127,7 +128,7 @@ TEST_F(InputOutput, AMissingPackingOrAFolderIsRefused) {
 }
 
 TEST_F(InputOutput, ReadsTheDensePackingsOfTheTests) {
-  const pfv::PackingArrays packing = pfv::read_packing(PFV_TEST_DATA "/packing_500.csv");
+  const pfv::PackingArrays packing = support::data_packing("packing_500.csv");
   ASSERT_EQ(packing.ids.size(), 500);
   EXPECT_GT(packing.radii.minCoeff(), 0);
   EXPECT_GE(packing.positions.minCoeff(), 0);
