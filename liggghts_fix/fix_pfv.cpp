@@ -2,6 +2,7 @@
 #include "fix_pfv.h"
 
 #include "pfv/error.hpp"
+#include "pfv/flow.hpp"
 
 #include "atom.h"
 #include "comm.h"
@@ -199,7 +200,7 @@ void FixPfv::place_faces(pfv::Box& box) {
         faces_.positions()[static_cast<int>(face)];
 }
 
-/// A Flow keeps its fluid for life: where gravity or viscosity have changed since the last run,
+/// A flow keeps its fluid for life: where gravity or viscosity have changed since the last run,
 /// another one takes over its state, on a network that both build from the same grains.
 void FixPfv::prepare_flow(const pfv::Box& box) {
   if (flow_ && flow_->fluid().gravity == settings_.fluid.gravity &&
@@ -309,7 +310,8 @@ int FixPfv::modify_param(int narg, char** arg) {
   int taken = 0;
   everywhere([&] { taken = modify_pfv(settings_, narg, arg); });
   on_root([&] {
-    if (flow_) flow_->set_retriangulation_strain(settings_.options.retriangulation_strain);
+    if (auto* pores = dynamic_cast<pfv::Flow*>(flow_.get()))
+      pores->set_retriangulation_strain(settings_.options.retriangulation_strain);
   });
   return taken;
 }

@@ -16,7 +16,7 @@ FixStyle(pfv,FixPfv)
 #include "restart_record.h"
 #include "result_files.h"
 
-#include "pfv/flow.hpp"
+#include "pfv/flow_model.hpp"
 
 #include "fix.h"
 
@@ -27,7 +27,7 @@ FixStyle(pfv,FixPfv)
 namespace LAMMPS_NS {
 
 /// Gathers the grains on rank 0, calls the flow library once, scatters the forces. The physics is
-/// in pfv::Flow, which lives on rank 0 alone; everything else here is the same on all ranks.
+/// in pfv::FlowModel, which lives on rank 0 alone; everything else here is the same on all ranks.
 class FixPfv : public Fix {
  public:
   FixPfv(class LAMMPS*, int, char**);
@@ -104,7 +104,7 @@ class FixPfv : public Fix {
   std::array<double, 6> last_positions_{};
 
   // rank 0 only
-  std::unique_ptr<pfv::Flow> flow_;
+  std::unique_ptr<pfv::FlowModel> flow_;
   std::unique_ptr<PfvResultFiles> files_;
   std::optional<pfv::FlowState> restored_;
   std::optional<pfv::Report> report_;

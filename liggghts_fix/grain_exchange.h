@@ -5,7 +5,7 @@
 
 #include "other_fixes.h"
 
-#include "pfv/flow.hpp"
+#include "pfv/flow_model.hpp"
 #include "pfv/packing.hpp"
 
 #include "pointers.h"

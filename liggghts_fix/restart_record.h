@@ -6,7 +6,7 @@
 #include "grain_exchange.h"
 #include "result_files.h"
 
-#include "pfv/flow.hpp"
+#include "pfv/flow_model.hpp"
 
 #include <array>
 #include <vector>

@@ -69,29 +69,29 @@ void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWritt
   profile_schedule_.resume_after(step);
 }
 
-void PfvResultFiles::write(const pfv::Flow& flow, const pfv::Packing& packing,
+void PfvResultFiles::write(const pfv::FlowModel& flow, const pfv::Packing& packing,
                            std::int64_t step) {
   if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, step);
   if (profile_ && profile_schedule_.due(step)) write_profile_row(flow);
 }
 
-void PfvResultFiles::write_fields(const pfv::Flow& flow, const pfv::Packing& packing,
+void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
                                   std::int64_t step) {
   const std::string base = fields_->path.substr(0, fields_->path.rfind(".pvd"));
-  const auto pores = [](const std::string& stem, std::int64_t s) {
-    return stem + "_pores_" + std::to_string(s) + ".vtu";
+  const auto fluid = [&](const std::string& stem, std::int64_t s) {
+    return stem + "_" + flow.field_name() + "_" + std::to_string(s) + ".vtu";
   };
   const auto grains = [](const std::string& stem, std::int64_t s) {
     return stem + "_grains_" + std::to_string(s) + ".vtu";
   };
-  pfv::write_network(pores(base, step), flow);
+  flow.write_fields(fluid(base, step));
   pfv::write_spheres(grains(base, step), packing, flow.forces());
   written_.push_back({step, flow.time()});
 
   std::vector<pfv::CollectionEntry> entries;
   const std::string name = file_name_of(base);
   for (const PfvWrittenStep& one : written_) {
-    entries.push_back({one.time, 0, pores(name, one.step)});
+    entries.push_back({one.time, 0, fluid(name, one.step)});
     entries.push_back({one.time, 1, grains(name, one.step)});
   }
   pfv::write_collection(fields_->path, entries);
@@ -105,7 +105,7 @@ void PfvResultFiles::open_profile() {
   profile_file_ << header << '\n' << rows << std::setprecision(12);
 }
 
-void PfvResultFiles::write_profile_row(const pfv::Flow& flow) {
+void PfvResultFiles::write_profile_row(const pfv::FlowModel& flow) {
   if (!profile_file_.is_open()) open_profile();
   const pfv::Box& box = flow.box();
   const double lower = box.lower[profile_->axis], upper = box.upper[profile_->axis];

@@ -5,7 +5,7 @@
 
 #include "arguments.h"
 
-#include "pfv/flow.hpp"
+#include "pfv/flow_model.hpp"
 
 #include <cstdint>
 #include <fstream>
@@ -43,11 +43,11 @@ class PfvResultFiles {
 
   /// Writes what is due after a flow step, at the flow's own time: LIGGGHTS' `time` begins anew at
   /// each restart. Throws pfv::FileError.
-  void write(const pfv::Flow& flow, const pfv::Packing& packing, std::int64_t step);
+  void write(const pfv::FlowModel& flow, const pfv::Packing& packing, std::int64_t step);
 
  private:
-  void write_fields(const pfv::Flow& flow, const pfv::Packing& packing, std::int64_t step);
-  void write_profile_row(const pfv::Flow& flow);
+  void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, std::int64_t step);
+  void write_profile_row(const pfv::FlowModel& flow);
   void open_profile();
 
   std::optional<PfvFieldOutput> fields_;

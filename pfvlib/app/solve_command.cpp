@@ -26,7 +26,7 @@ struct StepTimes {
   std::optional<double> cpu, wall;
 };
 
-StepTimes repeat_steps(Flow& flow, const Packing& packing, const SolveRequest& request) {
+StepTimes repeat_steps(FlowModel& flow, const Packing& packing, const SolveRequest& request) {
   if (request.repeat == 0) return {};
   std::vector<double> cpu, wall;
   for (int step = 0; step < request.repeat; ++step) {
@@ -51,9 +51,9 @@ bool is_unloaded(const SolveRequest& request, const Packing& packing) {
                      [&](const Patch& patch) { return idle(patch.boundary); });
 }
 
-void warn_of_hidden(const Flow& flow, const Packing& packing, std::ostream& warnings) {
+void warn_of_hidden(const FlowModel& flow, const Packing& packing, std::ostream& warnings) {
   constexpr std::size_t shown = 5;
-  const std::vector<int>& hidden = flow.network().hidden;
+  const std::vector<int> hidden = flow.hidden();
   if (hidden.empty()) return;
   warnings << "pfv: warning: " << hidden.size()
            << " hidden spheres lie inside bigger ones and touch no pore, ids";
@@ -62,7 +62,7 @@ void warn_of_hidden(const Flow& flow, const Packing& packing, std::ostream& warn
   warnings << (hidden.size() > shown ? " ...\n" : "\n");
 }
 
-void warn(const SolveRequest& request, const Flow& flow, const Packing& packing,
+void warn(const SolveRequest& request, const FlowModel& flow, const Packing& packing,
           const Counts& counts, std::ostream& warnings) {
   warn_of_hidden(flow, packing, warnings);
   if (is_unloaded(request, packing))
@@ -76,11 +76,11 @@ void warn(const SolveRequest& request, const Flow& flow, const Packing& packing,
                 " conductance\n";
 }
 
-void write_outputs(const SolveRequest& request, const Flow& flow, const Packing& packing,
+void write_outputs(const SolveRequest& request, const FlowModel& flow, const Packing& packing,
                    const Report& report) {
   if (request.forces) write_forces(*request.forces, packing, flow.forces());
   if (request.report) write_report(*request.report, report);
-  if (request.vtk) write_network(*request.vtk, flow);
+  if (request.vtk) flow.write_fields(*request.vtk);
 }
 
 void write_summary(const SolveRequest& request, const Report& report, std::ostream& out) {

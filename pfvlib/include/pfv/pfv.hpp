@@ -4,6 +4,7 @@
 #include "pfv/box.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
+#include "pfv/flow_model.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/io.hpp"
 #include "pfv/network.hpp"

@@ -4,6 +4,7 @@
 #include "coupling/flow_data.hpp"
 #include "network/pore_network.hpp"
 #include "pfv/error.hpp"
+#include "pfv/io.hpp"
 
 #include <cmath>
 #include <limits>
@@ -180,6 +181,14 @@ double Flow::time_step_limit(const Eigen::VectorXd& masses) {
 
 std::int64_t Flow::retriangulations() const { return data_->retriangulations; }
 
+std::vector<int> Flow::hidden() const {
+  data_->require_result();
+  const BuiltNetwork& built = *data_->built;
+  std::vector<int> columns;
+  for (const int sphere : built.network.hidden) columns.push_back(built.grains.columns[sphere]);
+  return columns;
+}
+
 std::int64_t Flow::hidden_or_outside() const {
   data_->require_result();
   const BuiltNetwork& built = *data_->built;
@@ -212,5 +221,7 @@ Report Flow::report() const {
   data_->require_result();
   return make_report(*data_);
 }
+
+void Flow::write_fields(const std::string& path) const { write_network(path, *this); }
 
 }  // namespace pfv

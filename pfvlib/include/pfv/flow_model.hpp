@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/box.hpp"
+#include "pfv/fluid.hpp"
+#include "pfv/options.hpp"
+#include "pfv/packing.hpp"
+#include "pfv/report.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pfv {
+
+/// Forces of the fluid on the grains, one column a sphere of the packing, in its order, N.
+/// Hidden and left-out spheres get buoyancy (hidden ones) or nothing (left-out ones).
+struct Forces {
+  Eigen::Matrix3Xd total;     ///< pressure + viscous + buoyancy
+  Eigen::Matrix3Xd pressure;  ///< with buoyancy; empty unless Options::split_forces
+  Eigen::Matrix3Xd viscous;   ///< empty unless Options::split_forces
+  Eigen::VectorXd sphere_pressure;  ///< Pa, mean over the sphere's surface; empty unless
+                                    ///< Options::sphere_pressure; 0 for hidden and left-out spheres
+};
+
+/// What a model must remember to go on after a restart with the same packing, besides its settings.
+struct FlowState {
+  double time = 0.0;                       ///< s
+  double strain = 0.0;                     ///< accumulated since the last triangulation
+  std::int64_t retriangulations = 0;       ///< triangulations after the first
+  std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
+};
+
+/// What a staged step must know of the grains, one entry (or column) a sphere of the packing.
+struct GrainDynamics {
+  Eigen::Map<const Eigen::VectorXd> masses{nullptr, 0};  ///< kg, > 0; infinite: a grain whose velocity
+                                                         ///< is prescribed (frozen, moved by force)
+  Eigen::Map<const Eigen::Matrix3Xd> other_forces{nullptr, 3, 0};  ///< N: contacts, gravity, ...
+};
+
+/// A fluid between moving grains, as a host program sees it: grains in, forces out. `Flow` (pore-scale
+/// finite volumes) and `DarcyGrid` (a coarse grid) are the two that there are; a host that needs no
+/// more than this holds either.
+///
+/// Every method throws InputError (bad packing, a pressure that nothing determines) or SolverError;
+/// after a throw the model holds no result until the next successful call.
+class FlowModel {
+ public:
+  virtual ~FlowModel() = default;
+
+  /// Advances the fluid by `dt` > 0 (s) to the instant at which the grains are at `packing`.
+  /// `packing.velocities` are the mean velocities over dt (method: backward Euler, thesis eq. 4.8).
+  /// The result is valid until the next call.
+  virtual const Forces& step(const Packing& packing, double dt) = 0;
+  /// The same solve without advancing anything: a steady state, the setup of a run, a repeated
+  /// timing. `dt` is needed (> 0) only for a compressible fluid.
+  virtual const Forces& evaluate(const Packing& packing, double dt = 0.0) = 0;
+
+  /// The same advance where dt may exceed `time_step_limit`: the drag of the fluid is integrated over
+  /// the step in Chebyshev sub-stages on the kept factor, with the other forces held, and the forces
+  /// returned are their mean over the step. `packing.velocities` must be those of the instant from
+  /// which the host will apply the forces over dt (leapfrog: v(n+1/2)). Below the limit this is
+  /// `step`. Cost: about 1.6 sqrt(dt / limit) solves a step. Verwer 1996, eqs. of the first-order RKC.
+  virtual const Forces& step_staged(const Packing& packing, double dt,
+                                    const GrainDynamics& grains) = 0;
+  /// The same without advancing anything: the setup of a run.
+  virtual const Forces& evaluate_staged(const Packing& packing, double dt,
+                                        const GrainDynamics& grains) = 0;
+  /// Sub-stages of the last step.
+  virtual int stages() const = 0;
+
+  /// Discards what was derived from the packing; the next call makes it anew.
+  virtual void rebuild() = 0;
+
+  /// New positions, velocities or boundary values of the faces and patches. Values cost nothing;
+  /// another kind of boundary, another wall type, or other rectangles lead to a rebuild. Positions
+  /// take effect at the next rebuild.
+  virtual void set_box(const Box& box) = 0;
+  virtual const Box& box() const = 0;
+  virtual const Fluid& fluid() const = 0;
+
+  virtual double time() const = 0;    ///< s, that was advanced
+  virtual double strain() const = 0;  ///< pore strain since the last rebuild
+  virtual FlowState state() const = 0;
+  /// Takes up a stored state; `pore_pressures` must belong to the network that the next packing gives.
+  virtual void set_state(FlowState state) = 0;
+
+  // results of the last call
+  virtual const Forces& forces() const = 0;
+  virtual const std::array<FaceResult, 6>& faces() const = 0;
+  /// Force of the fluid on each face alone, N: cheap enough for every step.
+  virtual std::array<Eigen::Vector3d, 6> face_forces() const = 0;
+  /// Pa, at a place (m). Throws InputError outside the box.
+  virtual double pressure_at(const Eigen::Vector3d& place) const = 0;
+  /// Mean pressure (Pa) over the plane (axis 0-2, position in m); NaN-free: throws InputError for a
+  /// plane that cuts nothing.
+  virtual double plane_pressure(int axis, double position) const = 0;
+  /// Mean pressure over the fluid's volume, Pa.
+  virtual double mean_pressure() const = 0;
+  /// The limit of the explicit coupling, dt < 2 / lambda_max of the drag, s, by power iteration on
+  /// the kept factor (masses in kg, one a sphere of the last packing). Infinite where nothing resists.
+  virtual double time_step_limit(const Eigen::VectorXd& masses) = 0;
+  virtual std::int64_t retriangulations() const = 0;  ///< rebuilds after the first
+  virtual std::vector<int> hidden() const = 0;  ///< columns of the packing that the fluid cannot see
+  /// Hidden spheres plus those left out because their centre is outside the box.
+  virtual std::int64_t hidden_or_outside() const = 0;
+
+  /// Balances, permeability, counts, times of everything done so far.
+  virtual Report report() const = 0;
+  /// The fields of the last call as a VTK unstructured grid (.vtu). Throws FileError.
+  virtual void write_fields(const std::string& path) const = 0;
+  /// What the cells of that grid are: "pores" or "cells".
+  virtual const char* field_name() const = 0;
+};
+
+}  // namespace pfv
