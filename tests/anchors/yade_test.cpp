@@ -173,7 +173,7 @@ TEST_P(YadeMoving, ItsRulesGiveItsForcesUnderADrainedPiston) {
   Eigen::Matrix3Xd velocities = Eigen::Matrix3Xd::Zero(3, s.spheres.size());
   velocities.row(2) = -s.spheres.centres.row(2);
   const Eigen::VectorXd rates = pfv::volume_rates(
-      pfv::volume_rate_matrix(s.network, s.spheres), s.network, velocities, box);
+      pfv::volume_rate_matrix(s.network, s.spheres), velocities, box);
   const Eigen::VectorXd p = pressures_of(s, yade_conductances(s), rates);
   const Eigen::Matrix3Xd theirs =
       force_table(GetParam().file("_moving_forces.csv"), s.spheres.size());

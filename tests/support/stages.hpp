@@ -40,8 +40,9 @@ inline Eigen::VectorXd pressures_of(const Stages& s, const std::vector<double>& 
                                     const Eigen::VectorXd& rates) {
   const pfv::Unknowns unknowns = pfv::number_unknowns(s.network, s.boundaries, s.box);
   const pfv::PressureSystem system = pfv::assemble(s.network, conductances, unknowns, {});
-  Eigen::VectorXd pressures = pfv::imposed_pressures(s.network, s.boundaries, s.box, 0.0);
-  const Eigen::VectorXd b = pfv::right_hand_side(system, unknowns, s.box, -rates, pressures);
+  Eigen::VectorXd pressures(s.network.pores()), b;
+  pfv::impose_pressures(s.network, s.boundaries, s.box, 0.0, pressures);
+  pfv::right_hand_side(system, unknowns, s.box, -rates, pressures, b);
   Eigen::VectorXd solution(unknowns.count);
   const auto solver = pfv::make_solver(pfv::SolverKind::automatic, pfv::OrderingKind::automatic);
   solver->order(system.matrix);

@@ -31,7 +31,7 @@ struct Piston {
   double strain_rate() const {
     const Stages s = stages_of(packing, box);
     const Eigen::VectorXd rates = pfv::volume_rates(
-        pfv::volume_rate_matrix(s.network, s.spheres), s.network, packing.velocities, box);
+        pfv::volume_rate_matrix(s.network, s.spheres), packing.velocities, box);
     double largest = 0.0;
     for (int p = 0; p < s.network.pores(); ++p) {
       const double volume = s.throats.pore_fluid_volume[p];

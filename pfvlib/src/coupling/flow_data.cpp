@@ -180,54 +180,54 @@ void FlowData::assemble_and_factor(double step) {
 void FlowData::update_rates(const Packing& packing) {
   moving = !at_rest(packing, box);
   refuse_undetermined(moving);
-  if (moving)
-    rates = rates_of(active_velocities(packing, built->grains.columns));
-  else
-    rates = Eigen::VectorXd::Zero(built->network.pores());
+  if (moving) {
+    gather_velocities(packing, built->grains.columns, velocities);
+    rates_of(velocities);
+  } else {
+    rates.setZero(built->network.pores());
+  }
   refuse_isolated();
 }
 
-Eigen::VectorXd FlowData::rates_of(const Eigen::Matrix3Xd& velocities) {
+void FlowData::rates_of(const Eigen::Matrix3Xd& of_grains) {
   const PhaseClock clock(seconds.assemble);
   if (!built->volume_rate_matrix)
     built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
   ++counts.volume_rate;
-  return volume_rates(*built->volume_rate_matrix, built->network, velocities, box);
+  volume_rates(*built->volume_rate_matrix, of_grains, box, team, rates);
+}
+
+/// Fills in the imposed pressures, less their mean: with a large common pressure the balances would
+/// lose its digits.
+void FlowData::impose(double at_time) {
+  const auto& pores = built->unknowns.imposed_pores;
+  impose_pressures(built->network, built->boundaries, box, at_time, relative_pressures);
+  double sum = 0.0;
+  for (const int pore : pores) sum += relative_pressures[pore];
+  reference = pores.empty() ? 0.0 : sum / static_cast<double>(pores.size());
+  for (const int pore : pores) relative_pressures[pore] -= reference;
 }
 
 /// Pressures for the present rates.
 void FlowData::solve_pressures(double at_time) {
   const PhaseClock clock(seconds.solve);
-  const Eigen::Index pores = built->network.pores();
-  Eigen::VectorXd imposed = imposed_pressures(built->network, built->boundaries, box, at_time);
-  double sum = 0.0;
-  int count = 0;
-  for (Eigen::Index p = 0; p < pores; ++p)
-    if (built->unknowns.of_pore[p] == Unknowns::imposed) {
-      sum += imposed[p];
-      ++count;
-    }
-  // with a large common pressure the balances would lose its digits
-  reference = count > 0 ? sum / count : 0.0;
-  for (Eigen::Index p = 0; p < pores; ++p)
-    if (built->unknowns.of_pore[p] == Unknowns::imposed) imposed[p] -= reference;
-
-  Eigen::VectorXd sources = -rates;
+  const std::vector<int>& unknown = built->unknowns.of_pore;
+  relative_pressures.resize(built->network.pores());
+  impose(at_time);
+  sources = -rates;
   previous_pressures = old_pressures;
   if (storage.size() > 0)
     sources.array() += storage.array() * (old_pressures.array() - reference);
   if (!box.pressure_gradient.isZero(0.0))
     sources += gradient_sources(built->network, built->conductances.value, box.pressure_gradient);
-  right_side = right_hand_side(built->system, built->unknowns, box, sources, imposed);
+  right_hand_side(built->system, built->unknowns, box, sources, relative_pressures, right_side);
   solution.resize(built->unknowns.count);
   if (built->unknowns.count > 0) {
     built->solver->solve(right_side, solution);
     ++counts.solve;
   }
-  relative_pressures = imposed;
-  for (Eigen::Index p = 0; p < pores; ++p)
-    if (built->unknowns.of_pore[p] != Unknowns::imposed)
-      relative_pressures[p] = solution[built->unknowns.of_pore[p]];
+  for (std::size_t p = 0; p < unknown.size(); ++p)
+    if (unknown[p] >= 0) relative_pressures[static_cast<Eigen::Index>(p)] = solution[unknown[p]];
   pressures = relative_pressures.array() + reference;
   if (!pressures.allFinite())
     throw SolverError(built->solver->name() +
@@ -236,8 +236,8 @@ void FlowData::solve_pressures(double at_time) {
 }
 
 Eigen::Vector3d FlowData::buoyancy_of(int sphere) const {
-  const double volume = 4.0 / 3.0 * pi * std::pow(built->grains.spheres.radii[sphere], 3);
-  return -fluid.density * volume * fluid.gravity;
+  const double r = built->grains.spheres.radii[sphere];
+  return -fluid.density * 4.0 / 3.0 * pi * r * r * r * fluid.gravity;
 }
 
 void FlowData::make_force_matrices() {
@@ -253,48 +253,52 @@ void FlowData::make_force_matrices() {
   }
 }
 
+/// S p of the active spheres and the walls.
+void FlowData::multiply_forces(const ForceMatrix& matrix, ForceParts parts,
+                               Eigen::Matrix3Xd& result) {
+  multiply(matrix, relative_pressures, team, result);
+  if (!box.pressure_gradient.isZero(0.0))
+    result += gradient_forces(built->network, built->throats, built->grains.spheres.size(), parts,
+                              box.pressure_gradient);
+}
+
 void FlowData::compute_forces(const Packing& packing) {
   const PhaseClock clock(seconds.forces);
   make_force_matrices();
-  const int active = built->grains.spheres.size();
+  const std::vector<int>& columns = built->grains.columns;
+  const auto active = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index n = packing.size();
   const auto spread = [&](const Eigen::Matrix3Xd& from, Eigen::Matrix3Xd& to) {
-    to = Eigen::Matrix3Xd::Zero(3, n);
-    for (int i = 0; i < active; ++i) to.col(built->grains.columns[i]) = from.col(i);
+    to.resize(3, n);
+    if (active < n) to.setZero();
+    for (Eigen::Index i = 0; i < active; ++i) to.col(columns[i]) = from.col(i);
   };
-  const auto of_pressures = [&](const ForceMatrix& matrix, ForceParts parts) {
-    Eigen::Matrix3Xd result = multiply(matrix, relative_pressures);
-    if (!box.pressure_gradient.isZero(0.0))
-      result += gradient_forces(built->network, built->throats, active, parts,
-                                box.pressure_gradient);
-    return result;
-  };
-  fluid_forces = of_pressures(*built->force_matrix, {true, true});
+  multiply_forces(*built->force_matrix, {true, true}, fluid_forces);
   spread(fluid_forces, forces.total);
   if (options.split_forces) {
-    spread(of_pressures(*built->pressure_force_matrix, {true, false}), forces.pressure);
+    Eigen::Matrix3Xd of_pressure;
+    multiply_forces(*built->pressure_force_matrix, {true, false}, of_pressure);
+    spread(of_pressure, forces.pressure);
     forces.viscous = forces.total - forces.pressure;
   }
   if (options.buoyancy && !fluid.gravity.isZero(0.0)) {
-    for (int i = 0; i < active; ++i) {
-      const Eigen::Vector3d lift = buoyancy_of(i);
-      forces.total.col(built->grains.columns[i]) += lift;
-      if (options.split_forces) forces.pressure.col(built->grains.columns[i]) += lift;
+    for (Eigen::Index i = 0; i < active; ++i) {
+      const Eigen::Vector3d lift = buoyancy_of(static_cast<int>(i));
+      forces.total.col(columns[i]) += lift;
+      if (options.split_forces) forces.pressure.col(columns[i]) += lift;
     }
   }
   if (options.sphere_pressure) {
-    const Eigen::VectorXd mean = multiply(*built->surface_pressure, pressures);
-    forces.sphere_pressure = Eigen::VectorXd::Zero(n);
-    for (int i = 0; i < active; ++i) forces.sphere_pressure[built->grains.columns[i]] = mean[i];
+    multiply(*built->surface_pressure, pressures, team, mean_pressures);
+    forces.sphere_pressure.setZero(n);
+    for (Eigen::Index i = 0; i < active; ++i) forces.sphere_pressure[columns[i]] = mean_pressures[i];
   }
 }
 
 void FlowData::add_strain(double step) {
-  double largest = 0.0;
-  if (moving)
-    for (int p = 0; p < built->network.pores(); ++p)
-      largest = std::max(largest, std::abs(rates[p]) / built->strain_volume[p]);
-  strain += largest * step;
+  if (!moving || built->network.pores() == 0) return;
+  const Eigen::Map<const Eigen::ArrayXd> volumes(built->strain_volume.data(), rates.size());
+  strain += (rates.array().abs() / volumes).maxCoeff() * step;
 }
 
 }  // namespace pfv

@@ -66,15 +66,21 @@ struct FlowData {
   void refuse_isolated() const;
   void assemble_and_factor(double step);
   void update_rates(const Packing& packing);
-  Eigen::VectorXd rates_of(const Eigen::Matrix3Xd& velocities);
+  void rates_of(const Eigen::Matrix3Xd& of_grains);
+  void impose(double at_time);
   void solve_pressures(double at_time);
   Eigen::Vector3d buoyancy_of(int sphere) const;
   void make_force_matrices();
+  void multiply_forces(const ForceMatrix& matrix, ForceParts parts, Eigen::Matrix3Xd& result);
   void compute_forces(const Packing& packing);
   void run_stages(const Packing& packing, double step, double at_time,
                   const GrainDynamics& grains);
   void end_step(double step);
   void add_strain(double step);
+
+  Team team;
+  Eigen::Matrix3Xd velocities;  ///< of the active spheres
+  Eigen::VectorXd sources, mean_pressures;
 };
 
 /// Force on each face from the pressures of the last call; its flux is left 0.

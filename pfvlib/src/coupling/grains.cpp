@@ -106,13 +106,14 @@ ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains
   return grains;
 }
 
-Eigen::Matrix3Xd active_velocities(const Packing& packing, const std::vector<int>& columns) {
-  Eigen::Matrix3Xd velocities =
-      Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(columns.size()));
-  if (packing.velocities.cols() > 0)
+void gather_velocities(const Packing& packing, const std::vector<int>& columns,
+                       Eigen::Matrix3Xd& velocities) {
+  velocities.resize(3, static_cast<Eigen::Index>(columns.size()));
+  if (packing.velocities.cols() == 0)
+    velocities.setZero();
+  else
     for (std::size_t i = 0; i < columns.size(); ++i)
       velocities.col(static_cast<Eigen::Index>(i)) = packing.velocities.col(columns[i]);
-  return velocities;
 }
 
 bool at_rest(const Packing& packing, const Box& box) {

@@ -22,7 +22,9 @@ ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains
 
 /// Cheap tests of each step.
 bool is_inside(const Packing& packing, Eigen::Index column, const Box& box);
-Eigen::Matrix3Xd active_velocities(const Packing& packing, const std::vector<int>& columns);
+/// 3 x active spheres; zeros where the packing has none.
+void gather_velocities(const Packing& packing, const std::vector<int>& columns,
+                       Eigen::Matrix3Xd& velocities);
 bool at_rest(const Packing& packing, const Box& box);
 
 }  // namespace pfv

@@ -41,8 +41,8 @@ double FlowData::time_step_limit(const Eigen::VectorXd& masses) {
     Box fixed = box;
     for (FaceCondition& face : fixed.faces) face.velocity = 0.0;
     const auto drag = [&](const Eigen::VectorXd& v) {
-      const Eigen::VectorXd rates = volume_rates(*built->volume_rate_matrix, built->network,
-                                                 v.reshaped(3, spheres), fixed);
+      const Eigen::VectorXd rates =
+          volume_rates(*built->volume_rate_matrix, v.reshaped(3, spheres), fixed);
       Eigen::Matrix3Xd acceleration =
           multiply(*built->force_matrix, homogeneous_pressures(*built, rates)).leftCols(spheres);
       for (int i = 0; i < spheres; ++i) acceleration.col(i) /= masses[built->grains.columns[i]];
@@ -78,13 +78,14 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
     held.col(i) = grains.other_forces.col(columns[i]);
     if (lifted) held.col(i) += buoyancy_of(static_cast<int>(i));
   }
-  const Eigen::Matrix3Xd start = active_velocities(packing, columns);
+  Eigen::Matrix3Xd start;
+  gather_velocities(packing, columns, start);
   Eigen::Matrix3Xd before = start, now = start;
   Eigen::VectorXd mean_pressure = Eigen::VectorXd::Zero(built->network.pores());
   Eigen::VectorXd mean_rates = mean_pressure, pressure_before = mean_pressure,
                   rates_before = mean_pressure;
   for (const ChebyshevStage& stage : all) {
-    rates = rates_of(now);
+    rates_of(now);
     solve_pressures(at_time);
     const Eigen::Matrix3Xd fluid_force =
         multiply(*built->force_matrix, relative_pressures).leftCols(count);

@@ -92,14 +92,24 @@ ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats, int
   return compress(std::move(row_begin), std::move(pore), std::move(value));
 }
 
+void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team,
+              Eigen::Matrix3Xd& forces) {
+  forces.resize(3, matrix.rows());
+  const int* const begin = matrix.row_begin.data();
+  team.run_rows(begin, matrix.rows(), [&](int first, int last) {
+    for (int row = first; row < last; ++row) {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (int e = begin[row]; e < begin[row + 1]; ++e)
+        sum += pressures[matrix.pore[e]] * matrix.value.col(e);
+      forces.col(row) = sum;
+    }
+  });
+}
+
 Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures) {
-  Eigen::Matrix3Xd forces(3, matrix.rows());
-  for (int row = 0; row < matrix.rows(); ++row) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (int e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e)
-      sum += pressures[matrix.pore[e]] * matrix.value.col(e);
-    forces.col(row) = sum;
-  }
+  Team alone;
+  Eigen::Matrix3Xd forces;
+  multiply(matrix, pressures, alone, forces);
   return forces;
 }
 
@@ -137,13 +147,19 @@ SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& vert
   return matrix;
 }
 
-Eigen::VectorXd multiply(const SurfacePressure& matrix, const Eigen::VectorXd& pressures) {
-  const auto rows = static_cast<Eigen::Index>(matrix.row_begin.size()) - 1;
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(rows);
-  for (Eigen::Index row = 0; row < rows; ++row)
-    for (int e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e)
-      mean[row] += matrix.weight[e] * pressures[matrix.pore[e]];
-  return mean;
+void multiply(const SurfacePressure& matrix, const Eigen::VectorXd& pressures, Team& team,
+              Eigen::VectorXd& mean) {
+  const int rows = static_cast<int>(matrix.row_begin.size()) - 1;
+  mean.resize(rows);
+  const int* const begin = matrix.row_begin.data();
+  team.run_rows(begin, rows, [&](int first, int last) {
+    for (int row = first; row < last; ++row) {
+      double sum = 0.0;
+      for (int e = begin[row]; e < begin[row + 1]; ++e)
+        sum += matrix.weight[e] * pressures[matrix.pore[e]];
+      mean[row] = sum;
+    }
+  });
 }
 
 }  // namespace pfv

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "network/spheres.hpp"
+#include "parallel/team.hpp"
 #include "physics/throats.hpp"
 #include "pfv/network.hpp"
 
@@ -32,6 +33,8 @@ ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats, int
                          ForceParts parts);
 
 /// F = S p: 3 x (N + 6), N.
+void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team,
+              Eigen::Matrix3Xd& forces);
 Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures);
 
 /// What a macroscopic gradient (Pa/m) adds to S p where throats reach into images: 3 x (N + 6), N.
@@ -45,6 +48,7 @@ struct SurfacePressure {
   std::vector<double> weight;
 };
 SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& vertices, int spheres);
-Eigen::VectorXd multiply(const SurfacePressure& matrix, const Eigen::VectorXd& pressures);
+void multiply(const SurfacePressure& matrix, const Eigen::VectorXd& pressures, Team& team,
+              Eigen::VectorXd& mean);
 
 }  // namespace pfv

@@ -4,33 +4,57 @@
 #include "physics/cell_volumes.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace pfv {
 
 VolumeRateMatrix volume_rate_matrix(const PoreNetwork& network, const Spheres& spheres) {
   VolumeRateMatrix matrix;
-  matrix.gradient.reserve(network.cells());
-  for (const auto& cell : network.cell_vertices)
-    matrix.gradient.push_back(cell_volume(cell, spheres).gradient);
+  std::vector<int>& begin = matrix.row_begin;
+  begin.assign(network.pores() + 1, 0);
+  for (const int pore : network.cell_pore) begin[pore + 1] += 4;
+  for (int pore = 0; pore < network.pores(); ++pore) begin[pore + 1] += begin[pore];
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  matrix.mover.resize(begin.back());
+  matrix.area.resize(3, begin.back());
+  for (int c = 0; c < network.cells(); ++c) {
+    const auto& vertices = network.cell_vertices[c];
+    const auto gradient = cell_volume(vertices, spheres).gradient;
+    for (int i = 0; i < 4; ++i) {
+      const int entry = next[network.cell_pore[c]]++;
+      matrix.mover[entry] =
+          is_wall(vertices[i]) ? vertices[i] : network.vertex_sphere[vertices[i]];
+      matrix.area.col(entry) = gradient[i];
+    }
+  }
   return matrix;
 }
 
-Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const PoreNetwork& network,
-                             const Eigen::Matrix3Xd& velocities, const Box& box) {
+void volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
+                  const Box& box, Team& team, Eigen::VectorXd& rates) {
   std::array<Eigen::Vector3d, 6> wall_velocity;
   for (int face = 0; face < 6; ++face)
     wall_velocity[face] = box.faces[face].velocity * Eigen::Vector3d::Unit(face / 2);
-  Eigen::VectorXd rates = Eigen::VectorXd::Zero(network.pores());
-  for (int c = 0; c < network.cells(); ++c) {
-    double rate = 0.0;
-    for (int i = 0; i < 4; ++i) {
-      const Vertex vertex = network.cell_vertices[c][i];
-      rate += is_wall(vertex)
-                  ? matrix.gradient[c][i].dot(wall_velocity[wall_number(vertex)])
-                  : matrix.gradient[c][i].dot(velocities.col(network.vertex_sphere[vertex]));
+  rates.resize(matrix.rows());
+  const int* const begin = matrix.row_begin.data();
+  team.run_rows(begin, matrix.rows(), [&](int first, int last) {
+    for (int pore = first; pore < last; ++pore) {
+      double rate = 0.0;
+      for (int entry = begin[pore]; entry < begin[pore + 1]; ++entry) {
+        const Vertex mover = matrix.mover[entry];
+        rate += is_wall(mover) ? matrix.area.col(entry).dot(wall_velocity[wall_number(mover)])
+                               : matrix.area.col(entry).dot(velocities.col(mover));
+      }
+      rates[pore] = rate;
     }
-    rates[network.cell_pore[c]] += rate;
-  }
+  });
+}
+
+Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
+                             const Box& box) {
+  Team alone;
+  Eigen::VectorXd rates;
+  volume_rates(matrix, velocities, box, alone, rates);
   return rates;
 }
 

@@ -3,27 +3,33 @@
 
 #include "network/pore_boundaries.hpp"
 #include "network/spheres.hpp"
+#include "parallel/team.hpp"
 #include "pfv/box.hpp"
 #include "pfv/network.hpp"
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
 namespace pfv {
 
-/// E = dV/dx (thesis eqs. 4.4-4.8), kept cell by cell: the area vectors (m²) that the velocities of a
-/// cell's four vertices are multiplied with.
+/// E = dV/dx (thesis eqs. 4.4-4.8) in compressed rows, one a pore: the area vectors (m²) that the
+/// velocities of spheres and walls are multiplied with.
 struct VolumeRateMatrix {
-  std::vector<std::array<Eigen::Vector3d, 4>> gradient;
+  std::vector<int> row_begin{0};
+  std::vector<Vertex> mover;  ///< the sphere, or the wall
+  Eigen::Matrix3Xd area;
+
+  int rows() const { return static_cast<int>(row_begin.size()) - 1; }
 };
 
 VolumeRateMatrix volume_rate_matrix(const PoreNetwork& network, const Spheres& spheres);
 
 /// dV/dt = E v, m³/s, one entry a pore. `velocities`: 3 x N spheres of the network, m/s; walls move
 /// with the face velocities of the box.
-Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const PoreNetwork& network,
-                             const Eigen::Matrix3Xd& velocities, const Box& box);
+void volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
+                  const Box& box, Team& team, Eigen::VectorXd& rates);
+Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
+                             const Box& box);
 
 /// Base area (m²) of each pore on each of its faces, in the order of `boundaries.contacts`.
 std::vector<double> base_areas(const PoreNetwork& network, const PoreBoundaries& boundaries,

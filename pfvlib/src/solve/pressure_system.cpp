@@ -113,7 +113,10 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
   unknowns.of_pore.assign(network.pores(), Unknowns::imposed);
   unknowns.of_boundary.assign(6 + box.patches.size(), -1);
   for (int pore = 0; pore < network.pores(); ++pore) {
-    if (conditions[pore].pressure) continue;
+    if (conditions[pore].pressure) {
+      unknowns.imposed_pores.push_back(pore);
+      continue;
+    }
     if (conditions[pore].flux_boundary < 0) {
       unknowns.of_pore[pore] = unknowns.count++;
       continue;
@@ -133,26 +136,23 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
   return unknowns;
 }
 
-Eigen::VectorXd imposed_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                                  const Box& box, double time) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(network.pores());
-  Eigen::VectorXi count = Eigen::VectorXi::Zero(network.pores());
-  for (const auto& contact : boundaries.contacts) {
-    const Boundary& boundary = boundary_of(box, contact.boundary);
-    if (boundary.kind != Boundary::Kind::pressure) continue;
-    const double value =
-        boundary.profile
-            ? boundary.profile(network.origin + network.pore_centres.col(contact.pore), time)
-            : boundary.value;
-    sum[contact.pore] += value;
-    ++count[contact.pore];
-  }
-  for (const auto& contact : boundaries.contacts)
-    if (count[contact.pore] > 1) {
-      sum[contact.pore] /= count[contact.pore];
-      count[contact.pore] = 1;
+void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries, const Box& box,
+                      double time, Eigen::VectorXd& pressures) {
+  const auto& contacts = boundaries.contacts;  // those of one pore stand together
+  for (std::size_t first = 0, last = 0; first < contacts.size(); first = last) {
+    const int pore = contacts[first].pore;
+    double sum = 0.0;
+    int count = 0;
+    for (last = first; last < contacts.size() && contacts[last].pore == pore; ++last) {
+      const Boundary& boundary = boundary_of(box, contacts[last].boundary);
+      if (boundary.kind != Boundary::Kind::pressure) continue;
+      sum += boundary.profile
+                 ? boundary.profile(network.origin + network.pore_centres.col(pore), time)
+                 : boundary.value;
+      ++count;
     }
-  return sum;
+    if (count > 0) pressures[pore] = sum / count;
+  }
 }
 
 PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
@@ -210,10 +210,10 @@ Eigen::VectorXd gradient_sources(const PoreNetwork& network,
   return sources;
 }
 
-Eigen::VectorXd right_hand_side(const PressureSystem& system, const Unknowns& unknowns,
-                                const Box& box, const Eigen::VectorXd& sources,
-                                const Eigen::VectorXd& imposed) {
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(unknowns.count);
+void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, const Box& box,
+                     const Eigen::VectorXd& sources, const Eigen::VectorXd& imposed,
+                     Eigen::VectorXd& b) {
+  b.setZero(unknowns.count);
   for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore)
     if (unknowns.of_pore[pore] >= 0)
       b[unknowns.of_pore[pore]] += sources[static_cast<Eigen::Index>(pore)];
@@ -222,7 +222,6 @@ Eigen::VectorXd right_hand_side(const PressureSystem& system, const Unknowns& un
       b[unknowns.of_boundary[boundary]] += boundary_of(box, static_cast<int>(boundary)).value;
   for (const auto& coupling : system.couplings)
     b[coupling.unknown] += coupling.conductance * imposed[coupling.pore];
-  return b;
 }
 
 }  // namespace pfv

@@ -16,6 +16,7 @@ struct Unknowns {
   static constexpr int imposed = -1;
   std::vector<int> of_pore;      ///< its unknown, or `imposed`
   std::vector<int> of_boundary;  ///< the unknown that the pores of a flux boundary share, or -1
+  std::vector<int> imposed_pores;  ///< those without an unknown
   int count = 0;
 };
 
@@ -24,9 +25,10 @@ struct Unknowns {
 Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
                          const Box& box);
 
-/// Imposed pressure of each pore (Pa), 0 where none is: the mean over its boundaries with a pressure.
-Eigen::VectorXd imposed_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                                  const Box& box, double time);
+/// Sets the pressure (Pa) of each pore with an imposed one, and no other: the mean over its boundaries
+/// with a pressure.
+void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries, const Box& box,
+                      double time, Eigen::VectorXd& pressures);
 
 /// A set of pores that no open throat joins to an imposed pressure.
 struct Isolated {
@@ -61,9 +63,9 @@ Eigen::VectorXd gradient_sources(const PoreNetwork& network,
                                  const Eigen::Vector3d& gradient);
 
 /// b = sources of each pore (m³/s) + inflow of the flux boundaries + what the imposed pressures
-/// (relative to the reference) drive.
-Eigen::VectorXd right_hand_side(const PressureSystem& system, const Unknowns& unknowns,
-                                const Box& box, const Eigen::VectorXd& sources,
-                                const Eigen::VectorXd& imposed);
+/// (relative to the reference; read at their pores alone) drive.
+void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, const Box& box,
+                     const Eigen::VectorXd& sources, const Eigen::VectorXd& imposed,
+                     Eigen::VectorXd& b);
 
 }  // namespace pfv
