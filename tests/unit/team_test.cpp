@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Threads that share work: every part once, whatever their number.
+#include "parallel/team.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <thread>
+#include <vector>
+
+namespace {
+
+TEST(Team, DoesEachPartOnce) {
+  for (const int threads : {1, 2, 3}) {
+    pfv::Team team(threads);
+    for (int round = 0; round < 200; ++round) {
+      const int parts = round % 7;
+      std::vector<int> done(parts, 0);
+      team.run(parts, [&](int part) { ++done[part]; });
+      EXPECT_EQ(done, std::vector<int>(parts, 1)) << threads << " threads, " << parts << " parts";
+    }
+  }
+}
+
+TEST(Team, UsesItsThreadsAndTheCallersAlone) {
+  pfv::Team team(2);
+  std::vector<std::thread::id> seen(4);
+  team.run(4, [&](int part) { seen[part] = std::this_thread::get_id(); });
+  EXPECT_EQ(seen[0], std::this_thread::get_id());
+  EXPECT_NE(seen[1], seen[0]);
+  EXPECT_EQ(seen[2], seen[0]);
+  EXPECT_EQ(seen[3], seen[1]);
+}
+
+TEST(Team, CutsRowsIntoPiecesThatCoverThemOnce) {
+  const std::vector<int> row_begin{5, 5, 90, 91, 91, 100, 140};
+  const int rows = static_cast<int>(row_begin.size()) - 1;
+  for (const int threads : {1, 2, 5, 9}) {
+    pfv::Team team(threads);
+    std::vector<int> done(rows, 0);
+    team.run_rows(row_begin.data(), rows, [&](int first, int last) {
+      for (int row = first; row < last; ++row) ++done[row];
+    });
+    EXPECT_EQ(done, std::vector<int>(rows, 1)) << threads << " threads";
+    const int none = 0;
+    team.run_rows(&none, 0, [&](int first, int last) { EXPECT_EQ(first, last); });
+  }
+}
+
+}  // namespace
