@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench_command.hpp"
 #include "pfv/error.hpp"
 #include "pfv/version.hpp"
 #include "selftest_command.hpp"
@@ -41,6 +42,14 @@ int run(int argc, char** argv) {
   CLI::App* selftest =
       app.add_subcommand("selftest", "known problems on this machine: a table of pass and fail");
   selftest->set_version_flag("--version", version_line);
+  pfv::app::BenchArguments bench_arguments;
+  CLI::App* bench = app.add_subcommand(
+      "bench", "times of each phase on packings made here, and what a run would cost");
+  bench->set_version_flag("--version", version_line);
+  pfv::app::add_bench_options(*bench, bench_arguments);
+  bench->footer(
+      "Example: what a run of 20000 grains and a million steps costs here\n"
+      "  pfv bench --spheres 1000,5000 --predict 20000 --steps 1e6 --steps-per-network 5000");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // help or version
@@ -51,6 +60,10 @@ int run(int argc, char** argv) {
     return complain(bad_input, error.what() + (": see " + command + " --help"));
   }
   if (selftest->parsed()) return pfv::app::selftest(std::cout) ? succeeded : failed;
+  if (bench->parsed()) {
+    pfv::app::bench(bench_arguments, std::cout);
+    return succeeded;
+  }
   pfv::app::solve(pfv::app::request_of(arguments), std::cout, std::cerr);
   return succeeded;
 }

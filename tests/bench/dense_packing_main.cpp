@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Prints a dense random packing of the unit cube as CSV:  pfv_dense_packing SPHERES [SEED]
-#include "support/dense_packing.hpp"
+#include "pfv/dense_packing.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   }
   const auto seed = static_cast<unsigned>(argc > 2 ? std::atoi(argv[2]) : 1);
   const pfv::PackingArrays packing =
-      pfv::support::dense_packing(spheres, 0.6, 0.2, seed);
+      pfv::dense_packing(spheres, 0.6, 0.2, seed);
   std::printf("id,x,y,z,radius\n");
   for (int k = 0; k < spheres; ++k)
     std::printf("%d,%.17g,%.17g,%.17g,%.17g\n", k + 1, packing.positions(0, k),

@@ -12,7 +12,7 @@
 #include "physics/throats.hpp"
 #include "physics/volume_rates.hpp"
 #include "solve/pressure_system.hpp"
-#include "support/dense_packing.hpp"
+#include "pfv/dense_packing.hpp"
 
 #include <benchmark/benchmark.h>
 #include <map>
@@ -34,7 +34,7 @@ const PackingArrays& packing_of(int spheres) {
   static std::map<int, PackingArrays> made;
   const auto found = made.find(spheres);
   if (found != made.end()) return found->second;
-  PackingArrays packing = support::dense_packing(spheres);
+  PackingArrays packing = dense_packing(spheres);
   packing.velocities = Eigen::Matrix3Xd::Zero(3, spheres);
   packing.velocities.row(2) = -packing.positions.row(2);
   return made.emplace(spheres, std::move(packing)).first->second;

@@ -7,7 +7,7 @@
 #include "pfv/pfv.hpp"
 #include "solve/cholmod_factor.hpp"
 #include "solve/ordering.hpp"
-#include "support/dense_packing.hpp"
+#include "pfv/dense_packing.hpp"
 #include "support/stages.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ const System& system_of(int spheres) {
   for (FaceCondition& face : box.faces) face.wall = Wall::symmetry;
   box[Face::zlo].boundary = Boundary::pressure(0.0);
   box[Face::zhi].boundary = Boundary::pressure(1.0);
-  const ::support::Stages stages = ::support::stages_of(pfv::support::dense_packing(spheres), box);
+  const ::support::Stages stages = ::support::stages_of(pfv::dense_packing(spheres), box);
   const Unknowns unknowns = number_unknowns(stages.network, stages.boundaries, box);
   const Conductances conductance = conductances(ConductanceLaw::hydraulic_radius, 1.0,
                                                 stages.network, stages.throats, stages.spheres);

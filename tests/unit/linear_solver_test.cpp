@@ -3,7 +3,7 @@
 
 #include "pfv/error.hpp"
 #include "solve/ordering.hpp"
-#include "support/dense_packing.hpp"
+#include "pfv/dense_packing.hpp"
 #include "support/stages.hpp"
 
 #include <gtest/gtest.h>
@@ -114,7 +114,7 @@ const PackingSystem& packing_system() {
     box[Face::zlo].boundary = Boundary::pressure(0.0);
     box[Face::zhi].boundary = Boundary::pressure(1.0);
     const ::support::Stages stages =
-        ::support::stages_of(support::dense_packing(1000, 0.6, 0.2, 1, 60), box);
+        ::support::stages_of(dense_packing(1000, 0.6, 0.2, 1, 60), box);
     const Unknowns unknowns = number_unknowns(stages.network, stages.boundaries, box);
     const std::vector<double> conductance =
         conductances(ConductanceLaw::hydraulic_radius, 1e-3, stages.network, stages.throats,

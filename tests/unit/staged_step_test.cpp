@@ -3,7 +3,7 @@
 #include "pfv/pfv.hpp"
 #include "physics/chebyshev_stages.hpp"
 #include "support/boxes.hpp"
-#include "support/dense_packing.hpp"
+#include "pfv/dense_packing.hpp"
 
 #include <cmath>
 #include <limits>
@@ -57,7 +57,7 @@ TEST(ChebyshevStages, StagesGrowLikeTheSquareRoot) {
 /// Grains with random velocities, braked by the fluid alone; positions stay (their displacement over
 /// the test is negligible). Kinetic energy after `steps`, relative to the start.
 struct Braked {
-  PackingArrays packing = support::dense_packing(60);
+  PackingArrays packing = dense_packing(60);
   Eigen::VectorXd masses;
   Eigen::Matrix3Xd none;
   Flow flow;

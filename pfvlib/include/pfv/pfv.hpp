@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pfv/box.hpp"
+#include "pfv/dense_packing.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/flow_model.hpp"

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#pragma once
+#include "pfv/dense_packing.hpp"
 
-#include "pfv/packing.hpp"
+#include "pfv/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
-namespace pfv::support {
+namespace pfv {
+namespace {
 
 /// Cells of the unit cube, each with the spheres whose centre it holds.
 class CellList {
@@ -47,10 +49,16 @@ class CellList {
   std::vector<int> first_, next_;
 };
 
-/// A dense random packing in the unit cube: radii spread evenly over 1 +- `spread` times their mean,
-/// pushed apart until what overlaps is a per mille of a radius or so. Same arguments, same packing.
-inline PackingArrays dense_packing(int spheres, double solid_fraction = 0.6, double spread = 0.2,
-                                   unsigned seed = 1, int sweeps = 400) {
+}  // namespace
+
+PackingArrays dense_packing(int spheres, double solid_fraction, double spread, unsigned seed,
+                            int sweeps) {
+  if (spheres < 1 || !(solid_fraction > 0.0) || !(solid_fraction <= 0.66) || !(spread >= 0.0) ||
+      !(spread < 1.0) || sweeps < 0)
+    throw InputError("a packing of " + std::to_string(spheres) + " spheres, solid fraction " +
+                     std::to_string(solid_fraction) + " and spread " + std::to_string(spread) +
+                     " cannot be made: give at least one sphere, a fraction in (0, 0.66] and a "
+                     "spread in [0, 1)");
   std::mt19937_64 generator(seed);
   const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };
   PackingArrays packing;
@@ -86,4 +94,4 @@ inline PackingArrays dense_packing(int spheres, double solid_fraction = 0.6, dou
   return packing;
 }
 
-}  // namespace pfv::support
+}  // namespace pfv

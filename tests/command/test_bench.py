@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""pfv bench: what it measures, fits and refuses. Never how long something took."""
+import math
+import unittest
+
+from command import CommandTest
+
+PHASES = {"triangulate", "throats", "assemble", "order", "factor", "solve", "forces", "rebuild",
+          "step"}
+
+
+class Bench(CommandTest):
+    def bench(self, *arguments):
+        result = self.run_pfv("bench", *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def test_every_phase_of_each_size_is_in_the_report(self):
+        self.bench("--spheres", "50,200", "--repeat", "3", "--report", "bench.json")
+        report = self.json("bench.json")
+        self.assertEqual([row["spheres"] for row in report["rows"]], [50, 200])
+        for row in report["rows"]:
+            self.assertGreater(row["pores"], row["unknowns"])
+            self.assertLess(row["residual"], 1e-12)
+            self.assertEqual(set(row["cpu_seconds"]), PHASES)
+            for times in row["cpu_seconds"].values():
+                self.assertEqual(len(times["repeats"]), 3)
+                self.assertEqual(times["median"], sorted(times["repeats"])[1])
+        self.assertIn("load_before", report["machine"])
+
+    def test_a_fit_through_two_sizes_gives_their_medians(self):
+        self.bench("--spheres", "50,200", "--repeat", "1", "--report", "bench.json")
+        report = self.json("bench.json")
+        for phase in PHASES:
+            law = report["fits"]["cholmod"][phase]
+            for row in report["rows"]:
+                fitted = law["factor"] * row["spheres"] ** law["exponent"]
+                self.assertTrue(
+                    math.isclose(fitted, row["cpu_seconds"][phase]["median"], rel_tol=1e-9))
+
+    def test_a_prediction_names_the_solver_to_take(self):
+        text = self.bench("--spheres", "50,200", "--repeat", "1", "--solver", "cholmod,klu2",
+                          "--predict", "300", "--steps", "1000", "--steps-per-network", "100")
+        self.assertIn("300 grains, 1000 steps, 10 networks", text)
+        self.assertRegex(text, "take --solver (cholmod|klu2)")
+
+    def test_what_cannot_be_measured_is_refused(self):
+        for arguments, word in ((["--spheres", "5"], "--spheres"),
+                                (["--spheres", "200,100"], "not above"),
+                                (["--steps", "10"], "--predict"),
+                                (["--spheres", "100", "--predict", "10"], "two sizes"),
+                                (["--repeat", "0"], "--repeat"),
+                                (["--solver", "none"], "cholmod"),
+                                (["--report", "no/such/file.json"], "no/such")):
+            result = self.run_pfv("bench", *arguments)
+            self.assertEqual(result.returncode, 2, arguments)
+            self.assertEqual(len(result.stderr.splitlines()), 1)
+            self.assertIn(word, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
