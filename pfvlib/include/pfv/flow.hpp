@@ -4,6 +4,7 @@
 #include "pfv/flow_model.hpp"
 #include "pfv/network.hpp"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -39,6 +40,10 @@ class Flow final : public FlowModel {
   const Forces& evaluate_staged(const Packing& packing, double dt,
                                 const GrainDynamics& grains) override;
   int stages() const override;
+  const Forces& step_implicit(const Packing& packing, double dt,
+                              const GrainDynamics& grains) override;
+  const Forces& evaluate_implicit(const Packing& packing, double dt,
+                                  const GrainDynamics& grains) override;
   const Forces& evaluate(const Packing& packing, double dt = 0.0) override;
 
   /// Discards the network; the next call triangulates anew. Stored pressures are carried over so that
@@ -73,7 +78,8 @@ class Flow final : public FlowModel {
   double mean_pressure() const override;
   /// dt < 2 / lambda_max(M^-1 S G^-1 E). Cost: some 20 to 40 solves for a new network, none when it
   /// was asked before.
-  double time_step_limit(const Eigen::VectorXd& masses) override;
+  double time_step_limit(const Eigen::VectorXd& masses,
+                         const std::array<Piston, 6>& pistons = {}) override;
   std::int64_t retriangulations() const override;
   /// Spheres whose power cell is empty.
   std::vector<int> hidden() const override;

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,11 +33,19 @@ struct FlowState {
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
 };
 
-/// What a staged step must know of the grains, one entry (or column) a sphere of the packing.
+/// A face that moves freely along its axis: a piston. By default its velocity is prescribed.
+struct Piston {
+  double mass = std::numeric_limits<double>::infinity();  ///< kg, > 0; infinite: prescribed velocity
+  double other_force = 0.0;  ///< N along +axis, beside that of the fluid: load, contacts
+};
+
+/// What a staged or implicit step must know of the grains, one entry (or column) a sphere of the
+/// packing, and of the faces.
 struct GrainDynamics {
   Eigen::Map<const Eigen::VectorXd> masses{nullptr, 0};  ///< kg, > 0; infinite: a grain whose velocity
                                                          ///< is prescribed (frozen, moved by force)
   Eigen::Map<const Eigen::Matrix3Xd> other_forces{nullptr, 3, 0};  ///< N: contacts, gravity, ...
+  std::array<Piston, 6> pistons{};  ///< in the order xlo ... zhi
 };
 
 /// A fluid between moving grains, as a host program sees it: grains in, forces out. `Flow` (pore-scale
@@ -70,6 +79,19 @@ class FlowModel {
   /// Sub-stages of the last step.
   virtual int stages() const = 0;
 
+  /// The same advance at any dt for one solve with the denser matrix A = G + dt E M^-1 E^T: pressures
+  /// and the velocities v(n+3/2) that follow from all forces over dt are found together, so that
+  /// continuity holds exactly for the velocities with which the host moves the grains next. The forces
+  /// are E^T p + (S - E^T) p_old with the pressures of the last step; after a new network or another
+  /// coupling, p_old comes from one more solve, and beyond some hundred limits it follows the
+  /// pressures slowly. Stable where the contacts are; of first order in dt. What `grains` says of
+  /// masses and forces must be what the host integrates; A is factored anew when a mass or dt changes.
+  /// Throws InputError for a model that has no such step.
+  virtual const Forces& step_implicit(const Packing& packing, double dt, const GrainDynamics& grains);
+  /// The same without advancing anything: the setup of a run.
+  virtual const Forces& evaluate_implicit(const Packing& packing, double dt,
+                                          const GrainDynamics& grains);
+
   /// Discards what was derived from the packing; the next call makes it anew.
   virtual void rebuild() = 0;
 
@@ -99,8 +121,10 @@ class FlowModel {
   /// Mean pressure over the fluid's volume, Pa.
   virtual double mean_pressure() const = 0;
   /// The limit of the explicit coupling, dt < 2 / lambda_max of the drag, s, by power iteration on
-  /// the kept factor (masses in kg, one a sphere of the last packing). Infinite where nothing resists.
-  virtual double time_step_limit(const Eigen::VectorXd& masses) = 0;
+  /// the kept factor (masses in kg, one a sphere of the last packing; faces that are pistons count with
+  /// theirs). Infinite where nothing resists.
+  virtual double time_step_limit(const Eigen::VectorXd& masses,
+                                 const std::array<Piston, 6>& pistons = {}) = 0;
   virtual std::int64_t retriangulations() const = 0;  ///< rebuilds after the first
   virtual std::vector<int> hidden() const = 0;  ///< columns of the packing that the fluid cannot see
   /// Hidden spheres plus those left out because their centre is outside the box.

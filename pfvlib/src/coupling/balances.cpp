@@ -194,7 +194,7 @@ double force_balance_error(const FlowData& flow, const std::array<FaceResult, 6>
 double residual(const FlowData& flow) {
   const double scale = flow.right_side.norm();
   if (flow.right_side.size() == 0 || scale == 0.0) return 0.0;
-  return (flow.right_side - multiply(flow.built->system.matrix, flow.solution)).norm() / scale;
+  return (flow.right_side - multiply(flow.solved_matrix(), flow.solution)).norm() / scale;
 }
 
 std::int64_t peak_memory() {

@@ -46,6 +46,25 @@ std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& no
 
 }  // namespace
 
+Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built) {
+  Eigen::Matrix3Xd places(3, built.unknowns.count);
+  for (int p = 0; p < built.network.pores(); ++p) {
+    const int unknown = built.unknowns.of_pore[p];
+    if (unknown != Unknowns::imposed) places.col(unknown) = built.network.pore_centres.col(p);
+  }
+  return places;
+}
+
+Eigen::Matrix3Xd forces_with_faces(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
+  Eigen::Matrix3Xd forces = multiply(*built.force_matrix, pressures);
+  const auto& contacts = built.boundaries.contacts;
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    forces.col(built.grains.spheres.size() + contacts[c].face) +=
+        pressures[contacts[c].pore] * built.base_area[c] *
+        outward_normal(static_cast<Face>(contacts[c].face));
+  return forces;
+}
+
 Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources) {
   Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x(built.unknowns.count);
   const auto& unknown = built.unknowns.of_pore;

@@ -8,6 +8,7 @@
 #include "physics/solid_union.hpp"
 #include "physics/throats.hpp"
 #include "physics/volume_rates.hpp"
+#include "solve/implicit_system.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/pressure_system.hpp"
 
@@ -16,6 +17,14 @@
 #include <vector>
 
 namespace pfv {
+
+/// What implicit steps need besides.
+struct ImplicitFactor {
+  ForceMatrix energy_forces;    ///< E^T
+  ImplicitSystem system;
+  std::unique_ptr<LinearSolver> solver;
+  Eigen::RowVectorXd yielding;  ///< dt/m of the grains and the six faces whose A is in the factor
+};
 
 /// All that is derived from one packing and kept until the next triangulation. What is optional is
 /// made when a step first needs it.
@@ -38,9 +47,16 @@ struct BuiltNetwork {
   std::optional<SurfacePressure> surface_pressure;
   std::optional<SolidUnion> solid;
   std::optional<double> time_step_limit;  ///< for `limit_masses`
-  Eigen::VectorXd limit_masses;
+  Eigen::VectorXd limit_masses;           ///< of the spheres of the packing and the six faces
+  std::optional<ImplicitFactor> implicit;
   std::vector<double> strain_volume;  ///< volume that a pore's strain refers to, bounded below
 };
+
+/// A place (m) for each unknown: that of its pore, or of one of those that share it.
+Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built);
+
+/// S p with the pressure on each face: 3 x (active spheres + 6), N.
+Eigen::Matrix3Xd forces_with_faces(const BuiltNetwork& built, const Eigen::VectorXd& pressures);
 
 /// Pressures (Pa) that sources (m³/s, one entry a pore) cause on the kept factor where every imposed
 /// pressure is 0.

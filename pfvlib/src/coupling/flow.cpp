@@ -36,6 +36,15 @@ void require_positive(double dt) {
 
 }  // namespace
 
+const Forces& FlowModel::step_implicit(const Packing&, double, const GrainDynamics&) {
+  throw InputError("this fluid model has no implicit coupling; take the explicit or the staged one");
+}
+
+const Forces& FlowModel::evaluate_implicit(const Packing& packing, double dt,
+                                           const GrainDynamics& grains) {
+  return step_implicit(packing, dt, grains);
+}
+
 Flow::Flow(Box box, Fluid fluid, Options options) : data_(std::make_unique<FlowData>()) {
   check(box);
   check(fluid);
@@ -56,13 +65,25 @@ const Forces& Flow::step(const Packing& packing, double dt) {
 
 const Forces& Flow::step_staged(const Packing& packing, double dt, const GrainDynamics& grains) {
   require_positive(dt);
-  return data_->compute(packing, dt, true, &grains);
+  return data_->compute(packing, dt, true, Coupling::staged, &grains);
 }
 
 const Forces& Flow::evaluate_staged(const Packing& packing, double dt,
                                     const GrainDynamics& grains) {
   require_positive(dt);
-  return data_->compute(packing, dt, false, &grains);
+  return data_->compute(packing, dt, false, Coupling::staged, &grains);
+}
+
+const Forces& Flow::step_implicit(const Packing& packing, double dt,
+                                  const GrainDynamics& grains) {
+  require_positive(dt);
+  return data_->compute(packing, dt, true, Coupling::implicit, &grains);
+}
+
+const Forces& Flow::evaluate_implicit(const Packing& packing, double dt,
+                                      const GrainDynamics& grains) {
+  require_positive(dt);
+  return data_->compute(packing, dt, false, Coupling::implicit, &grains);
 }
 
 int Flow::stages() const { return data_->stages; }
@@ -174,9 +195,10 @@ double Flow::mean_pressure() const {
   return volumes.size() > 0 ? volumes.dot(data_->pressures) / volumes.sum() : 0.0;
 }
 
-double Flow::time_step_limit(const Eigen::VectorXd& masses) {
+double Flow::time_step_limit(const Eigen::VectorXd& masses,
+                             const std::array<Piston, 6>& pistons) {
   data_->require_result();
-  return data_->time_step_limit(masses);
+  return data_->time_step_limit(masses, pistons);
 }
 
 std::int64_t Flow::retriangulations() const { return data_->retriangulations; }

@@ -15,20 +15,10 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A place for each unknown: that of its pore, or of one of those that share it.
-Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built) {
-  Eigen::Matrix3Xd places(3, built.unknowns.count);
-  for (int p = 0; p < built.network.pores(); ++p) {
-    const int unknown = built.unknowns.of_pore[p];
-    if (unknown != Unknowns::imposed) places.col(unknown) = built.network.pore_centres.col(p);
-  }
-  return places;
-}
-
 }  // namespace
 
 const Forces& FlowData::compute(const Packing& packing, double step, bool advance,
-                                const GrainDynamics* grains) {
+                                Coupling coupling, const GrainDynamics* grains) {
   if (fluid.bulk_modulus && !(step > 0.0))
     throw InputError("a compressible fluid needs a time step > 0");
   const double wall_start = wall_seconds();
@@ -38,26 +28,35 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     balance_.reset();
     rebuild_if_stale(packing);
     assemble_and_factor(step);
-    update_rates(packing);
     stages = 1;
+    force_lag.resize(0);
     const double at_time = advance ? time + step : time;
-    if (grains)
-      run_stages(packing, step, at_time, *grains);
-    else
-      solve_pressures(at_time);
+    if (coupling == Coupling::implicit) {
+      run_implicit(packing, step, at_time, *grains);
+    } else {
+      update_rates(packing);
+      if (coupling == Coupling::staged)
+        run_stages(packing, step, at_time, *grains);
+      else
+        solve_pressures(at_time, *built->solver);
+    }
     if (options.forces) compute_forces(packing);
     dt = step;
     solved_box = box;
     solved = true;
-    if (advance) end_step(step);
+    if (advance) end_step(step, coupling);
   }
   wall_total += wall_seconds() - wall_start;
   return forces;
 }
 
-void FlowData::end_step(double step) {
+void FlowData::end_step(double step, Coupling coupling) {
   time += step;
   add_strain(step);
+  if (coupling == Coupling::implicit)
+    lagged += relaxation * (relative_pressures - lagged);
+  else
+    lagged.resize(0);
   if (fluid.bulk_modulus) old_pressures = pressures;
 }
 
@@ -83,6 +82,7 @@ void FlowData::rebuild_if_stale(const Packing& packing) {
       old_pressures = carried_pressures(*old, old_values, *built);
   }
   pending_pressures.clear();
+  lagged.resize(0);
   stale = false;
   strain = 0.0;
   if (!first) ++retriangulations;
@@ -152,6 +152,7 @@ void FlowData::assemble_and_factor(double step) {
   if (built->solver && (!compressible || step == built->storage_dt)) return;
   const bool new_pattern = !built->solver;
   built->time_step_limit.reset();  // it belongs to the factor
+  if (built->implicit) built->implicit->yielding.resize(0);
   {
     const PhaseClock clock(seconds.assemble);
     storage = compressible ? Eigen::VectorXd(storage_volumes(built->throats) /
@@ -186,7 +187,7 @@ void FlowData::update_rates(const Packing& packing) {
   } else {
     rates.setZero(built->network.pores());
   }
-  refuse_isolated();
+  refuse_isolated(built->system.isolated);
 }
 
 void FlowData::rates_of(const Eigen::Matrix3Xd& of_grains) {
@@ -209,7 +210,7 @@ void FlowData::impose(double at_time) {
 }
 
 /// Pressures for the present rates.
-void FlowData::solve_pressures(double at_time) {
+void FlowData::solve_pressures(double at_time, LinearSolver& solver) {
   const PhaseClock clock(seconds.solve);
   const std::vector<int>& unknown = built->unknowns.of_pore;
   relative_pressures.resize(built->network.pores());
@@ -223,14 +224,14 @@ void FlowData::solve_pressures(double at_time) {
   right_hand_side(built->system, built->unknowns, box, sources, relative_pressures, right_side);
   solution.resize(built->unknowns.count);
   if (built->unknowns.count > 0) {
-    built->solver->solve(right_side, solution);
+    solver.solve(right_side, solution);
     ++counts.solve;
   }
   for (std::size_t p = 0; p < unknown.size(); ++p)
     if (unknown[p] >= 0) relative_pressures[static_cast<Eigen::Index>(p)] = solution[unknown[p]];
   pressures = relative_pressures.array() + reference;
   if (!pressures.allFinite())
-    throw SolverError(built->solver->name() +
+    throw SolverError(solver.name() +
                       " returned pressures that are not finite; the conductances span too many "
                       "orders of magnitude or the imposed values are too large");
 }
@@ -256,7 +257,7 @@ void FlowData::make_force_matrices() {
 /// S p of the active spheres and the walls.
 void FlowData::multiply_forces(const ForceMatrix& matrix, ForceParts parts,
                                Eigen::Matrix3Xd& result) {
-  multiply(matrix, relative_pressures, team, result);
+  multiply(matrix, force_lag.size() > 0 ? force_lag : relative_pressures, team, result);
   if (!box.pressure_gradient.isZero(0.0))
     result += gradient_forces(built->network, built->throats, built->grains.spheres.size(), parts,
                               box.pressure_gradient);
@@ -274,13 +275,16 @@ void FlowData::compute_forces(const Packing& packing) {
     for (Eigen::Index i = 0; i < active; ++i) to.col(columns[i]) = from.col(i);
   };
   multiply_forces(*built->force_matrix, {true, true}, fluid_forces);
-  spread(fluid_forces, forces.total);
   if (options.split_forces) {
     Eigen::Matrix3Xd of_pressure;
     multiply_forces(*built->pressure_force_matrix, {true, false}, of_pressure);
-    spread(of_pressure, forces.pressure);
-    forces.viscous = forces.total - forces.pressure;
+    spread(fluid_forces - of_pressure, forces.viscous);
   }
+  if (force_lag.size() > 0)  // the work of the change of pressure is that of E^T (implicit step)
+    fluid_forces.leftCols(active) +=
+        multiply(built->implicit->energy_forces, relative_pressures - force_lag).leftCols(active);
+  spread(fluid_forces, forces.total);
+  if (options.split_forces) forces.pressure = forces.total - forces.viscous;
   if (options.buoyancy && !fluid.gravity.isZero(0.0)) {
     for (Eigen::Index i = 0; i < active; ++i) {
       const Eigen::Vector3d lift = buoyancy_of(static_cast<int>(i));

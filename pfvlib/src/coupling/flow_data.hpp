@@ -15,6 +15,9 @@ struct Balance {
   std::array<FaceResult, 6> faces;
 };
 
+/// How the forces of a step are found from the velocities of its beginning.
+enum class Coupling { explicit_step, staged, implicit };
+
 /// The state behind Flow.
 struct FlowData {
   Box box;
@@ -41,6 +44,9 @@ struct FlowData {
   Eigen::VectorXd previous_pressures;    ///< the old pressures that the last solve started from, Pa
   Eigen::VectorXd relative_pressures;    ///< minus the reference, Pa
   Eigen::VectorXd pressures;             ///< Pa
+  Eigen::VectorXd lagged;     ///< relative pressures, relaxed over the last implicit steps, else empty
+  double relaxation = 1.0;    ///< part of the way that `lagged` goes towards the pressures of a step
+  Eigen::VectorXd force_lag;  ///< what the last call took for `lagged`, empty unless it was implicit
   Eigen::VectorXd right_side, solution;  ///< of the unknowns
   Eigen::Matrix3Xd fluid_forces;         ///< S p: 3 x (active spheres + 6), N
   Forces forces;
@@ -48,10 +54,15 @@ struct FlowData {
   std::vector<std::int64_t> packing_ids;
   std::vector<double> pending_pressures;  ///< from set_state, for the next network
 
-  /// With `grains` the step is divided in stages that stay stable beyond the explicit limit.
+  /// Only the explicit step needs no `grains`.
   const Forces& compute(const Packing& packing, double step, bool advance,
+                        Coupling coupling = Coupling::explicit_step,
                         const GrainDynamics* grains = nullptr);
-  double time_step_limit(const Eigen::VectorXd& masses);
+  double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
+  /// The matrix of the last solve.
+  const SymmetricMatrix& solved_matrix() const {
+    return force_lag.size() > 0 ? built->implicit->system.matrix : built->system.matrix;
+  }
   void require_result() const;
   /// Throws InputError without a result. Cost: one solve and a pass over the throats, once a call.
   const Balance& balance();
@@ -63,19 +74,27 @@ struct FlowData {
   bool needs_rebuild(const Packing& packing) const;
   void build(const Packing& packing);
   void refuse_undetermined(bool moving_now) const;
-  void refuse_isolated() const;
+  void refuse_isolated(const std::vector<Isolated>& held) const;
   void assemble_and_factor(double step);
   void update_rates(const Packing& packing);
   void rates_of(const Eigen::Matrix3Xd& of_grains);
+  void rates_of_motion(const Eigen::Matrix3Xd& motion);
   void impose(double at_time);
-  void solve_pressures(double at_time);
+  void solve_pressures(double at_time, LinearSolver& solver);
   Eigen::Vector3d buoyancy_of(int sphere) const;
   void make_force_matrices();
   void multiply_forces(const ForceMatrix& matrix, ForceParts parts, Eigen::Matrix3Xd& result);
   void compute_forces(const Packing& packing);
+  Eigen::Matrix3Xd motion_of(const Packing& packing) const;
+  void check_dynamics(const GrainDynamics& grains, const Packing& packing) const;
+  Eigen::RowVectorXd yielding(const GrainDynamics& grains, double step) const;
+  Eigen::Matrix3Xd held_forces(const GrainDynamics& grains) const;
   void run_stages(const Packing& packing, double step, double at_time,
                   const GrainDynamics& grains);
-  void end_step(double step);
+  void run_implicit(const Packing& packing, double step, double at_time,
+                    const GrainDynamics& grains);
+  void factor_implicit(const Eigen::RowVectorXd& per_mass);
+  void end_step(double step, Coupling coupling);
   void add_strain(double step);
 
   Team team;

@@ -56,8 +56,8 @@ void FlowData::refuse_undetermined(bool moving_now) const {
 }
 
 /// A set of pores without any way to a pressure can only be at rest.
-void FlowData::refuse_isolated() const {
-  for (const Isolated& isolated : built->system.isolated) {
+void FlowData::refuse_isolated(const std::vector<Isolated>& held) const {
+  for (const Isolated& isolated : held) {
     double net = 0.0, gross = 0.0;
     for (const int pore : isolated.pores) {
       net -= rates[pore];

@@ -10,45 +10,42 @@
 
 namespace pfv {
 
-namespace {
-
-void check(const GrainDynamics& grains, const Packing& packing) {
-  if (grains.other_forces.cols() != packing.size())
-    throw InputError("a staged step needs the other force of each of the " +
-                     std::to_string(packing.size()) + " grains");
-  for (Eigen::Index k = 0; k < packing.size(); ++k)
-    if (!grains.other_forces.col(k).allFinite())
-      throw InputError("sphere " + std::to_string(packing.ids[k]) +
-                       ": its other force is not finite; a staged step needs it");
-}
-
-}  // namespace
-
-double FlowData::time_step_limit(const Eigen::VectorXd& masses) {
-  if (masses.size() != static_cast<Eigen::Index>(packing_ids.size()))
+double FlowData::time_step_limit(const Eigen::VectorXd& masses,
+                                 const std::array<Piston, 6>& pistons) {
+  const auto count = static_cast<Eigen::Index>(packing_ids.size());
+  if (masses.size() != count)
     throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
-                     std::to_string(packing_ids.size()) + " spheres; give one a sphere");
-  if (!(masses.array() > 0.0).all())
+                     std::to_string(count) + " spheres; give one a sphere");
+  Eigen::VectorXd all(count + 6);
+  all.head(count) = masses;
+  for (int face = 0; face < 6; ++face) all[count + face] = pistons[face].mass;
+  if (!(all.array() > 0.0).all())
     throw InputError("time step limit: a mass is not a positive number; give kg");
-  if (built->time_step_limit && masses == built->limit_masses) return *built->time_step_limit;
-  built->limit_masses = masses;
+  if (built->time_step_limit && all == built->limit_masses) return *built->time_step_limit;
+  built->limit_masses = all;
   const int spheres = built->grains.spheres.size();
   double eigenvalue = 0.0;
   if (built->unknowns.count > 0 && spheres > 0) {
     make_force_matrices();
     if (!built->volume_rate_matrix)
       built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
-    Box fixed = box;
-    for (FaceCondition& face : fixed.faces) face.velocity = 0.0;
-    const auto drag = [&](const Eigen::VectorXd& v) {
-      const Eigen::VectorXd rates =
-          volume_rates(*built->volume_rate_matrix, v.reshaped(3, spheres), fixed);
-      Eigen::Matrix3Xd acceleration =
-          multiply(*built->force_matrix, homogeneous_pressures(*built, rates)).leftCols(spheres);
-      for (int i = 0; i < spheres; ++i) acceleration.col(i) /= masses[built->grains.columns[i]];
-      return Eigen::VectorXd(acceleration.reshaped());
+    // similar to M^-1 S G^-1 E, and nearly symmetric
+    Eigen::RowVectorXd root(spheres + 6);
+    for (int i = 0; i < spheres; ++i) root[i] = 1.0 / std::sqrt(masses[built->grains.columns[i]]);
+    for (int face = 0; face < 6; ++face) root[spheres + face] = 1.0 / std::sqrt(pistons[face].mass);
+    const auto drag = [&](const Eigen::VectorXd& u) {
+      const Eigen::Matrix3Xd v =
+          (u.reshaped(3, spheres + 6).array().rowwise() * root.array()).matrix();
+      const Eigen::VectorXd p = homogeneous_pressures(
+          *built, volume_rates(*built->volume_rate_matrix, v));
+      Eigen::Matrix3Xd force = forces_with_faces(*built, p);
+      force.array().rowwise() *= root.array();
+      for (int face = 0; face < 6; ++face)  // guided along its axis
+        for (int axis = 0; axis < 3; ++axis)
+          if (axis != face / 2) force(axis, spheres + face) = 0.0;
+      return Eigen::VectorXd(force.reshaped());
     };
-    eigenvalue = largest_eigenvalue(drag, 3 * spheres);
+    eigenvalue = largest_eigenvalue(drag, 3 * (spheres + 6));
   }
   built->time_step_limit =
       eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
@@ -60,37 +57,29 @@ double FlowData::time_step_limit(const Eigen::VectorXd& masses) {
 /// the mean force, so that forces, fluxes and volumes of the step balance exactly.
 void FlowData::run_stages(const Packing& packing, double step, double at_time,
                           const GrainDynamics& grains) {
-  if (!options.forces) throw InputError("a staged step needs forces: switch Options::forces on");
-  check(grains, packing);
-  const double limit = time_step_limit(grains.masses);
+  check_dynamics(grains, packing);
+  const double limit = time_step_limit(grains.masses, grains.pistons);
   const std::vector<ChebyshevStage> all = chebyshev_stages(2.0 * step / limit);
   stages = static_cast<int>(all.size());
-  if (stages == 1) return solve_pressures(at_time);
+  if (stages == 1) return solve_pressures(at_time, *built->solver);
 
   make_force_matrices();
-  const auto& columns = built->grains.columns;
-  const auto count = static_cast<Eigen::Index>(columns.size());
-  Eigen::RowVectorXd per_mass(count);  // dt / m: 0 for a prescribed velocity
-  Eigen::Matrix3Xd held(3, count);
-  const bool lifted = options.buoyancy && !fluid.gravity.isZero(0.0);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    per_mass[i] = step / grains.masses[columns[i]];
-    held.col(i) = grains.other_forces.col(columns[i]);
-    if (lifted) held.col(i) += buoyancy_of(static_cast<int>(i));
-  }
-  Eigen::Matrix3Xd start;
-  gather_velocities(packing, columns, start);
+  const Eigen::RowVectorXd per_mass = yielding(grains, step);
+  relative_pressures.setZero(built->network.pores());
+  impose(at_time);  // the reference pressure acts on pistons
+  const Eigen::Matrix3Xd held = held_forces(grains);
+  const Eigen::Matrix3Xd start = motion_of(packing);
   Eigen::Matrix3Xd before = start, now = start;
   Eigen::VectorXd mean_pressure = Eigen::VectorXd::Zero(built->network.pores());
   Eigen::VectorXd mean_rates = mean_pressure, pressure_before = mean_pressure,
                   rates_before = mean_pressure;
   for (const ChebyshevStage& stage : all) {
-    rates_of(now);
-    solve_pressures(at_time);
-    const Eigen::Matrix3Xd fluid_force =
-        multiply(*built->force_matrix, relative_pressures).leftCols(count);
+    rates_of_motion(now);
+    solve_pressures(at_time, *built->solver);
     const Eigen::Matrix3Xd change =
-        ((held + fluid_force).array().rowwise() * per_mass.array()).matrix();
+        ((held + forces_with_faces(*built, relative_pressures)).array().rowwise() *
+         per_mass.array())
+            .matrix();
     Eigen::Matrix3Xd next =
         (1.0 - stage.m - stage.n) * start + stage.m * now + stage.n * before + stage.f * change;
     before = std::move(now);

@@ -92,6 +92,26 @@ ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats, int
   return compress(std::move(row_begin), std::move(pore), std::move(value));
 }
 
+ForceMatrix energy_force_matrix(const VolumeRateMatrix& rates, int spheres) {
+  const auto row_of = [&](Vertex mover) {
+    return is_wall(mover) ? spheres + wall_number(mover) : mover;
+  };
+  ForceMatrix matrix;
+  matrix.row_begin.assign(spheres + 7, 0);
+  for (const Vertex mover : rates.mover) ++matrix.row_begin[row_of(mover) + 1];
+  for (int row = 0; row < spheres + 6; ++row) matrix.row_begin[row + 1] += matrix.row_begin[row];
+  matrix.pore.resize(rates.mover.size());
+  matrix.value.resize(3, rates.area.cols());
+  std::vector<int> next(matrix.row_begin.begin(), matrix.row_begin.end() - 1);
+  for (int pore = 0; pore < rates.rows(); ++pore)
+    for (int e = rates.row_begin[pore]; e < rates.row_begin[pore + 1]; ++e) {
+      const int entry = next[row_of(rates.mover[e])]++;
+      matrix.pore[entry] = pore;
+      matrix.value.col(entry) = rates.area.col(e);
+    }
+  return matrix;
+}
+
 void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team,
               Eigen::Matrix3Xd& forces) {
   forces.resize(3, matrix.rows());

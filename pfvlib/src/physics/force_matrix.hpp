@@ -4,6 +4,7 @@
 #include "network/spheres.hpp"
 #include "parallel/team.hpp"
 #include "physics/throats.hpp"
+#include "physics/volume_rates.hpp"
 #include "pfv/network.hpp"
 
 #include <Eigen/Core>
@@ -31,6 +32,11 @@ struct ForceParts {
 /// A throat with gamma <= 0 shares its viscous force equally among its spheres.
 ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats, int spheres,
                          ForceParts parts);
+
+/// E^T: the force that does the work of the pressures on the change of the pores' volumes. Rows as in S,
+/// but row N + f is the force of the pressure on face f. On each facet its sum is that of S; it parts it
+/// in thirds, S by sectors and surfaces.
+ForceMatrix energy_force_matrix(const VolumeRateMatrix& rates, int spheres);
 
 /// F = S p: 3 x (N + 6), N.
 void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team,

@@ -50,6 +50,26 @@ void volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& veloci
   });
 }
 
+Eigen::Matrix3Xd with_face_velocities(const Eigen::Matrix3Xd& velocities, const Box& box) {
+  Eigen::Matrix3Xd all = Eigen::Matrix3Xd::Zero(3, velocities.cols() + 6);
+  all.leftCols(velocities.cols()) = velocities;
+  for (int face = 0; face < 6; ++face)
+    all(face / 2, velocities.cols() + face) = box.faces[face].velocity;
+  return all;
+}
+
+Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion) {
+  const Eigen::Index walls = motion.cols() - 6;
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(matrix.rows());
+  for (int pore = 0; pore < matrix.rows(); ++pore)
+    for (int entry = matrix.row_begin[pore]; entry < matrix.row_begin[pore + 1]; ++entry) {
+      const Vertex mover = matrix.mover[entry];
+      rates[pore] += matrix.area.col(entry).dot(
+          motion.col(is_wall(mover) ? walls + wall_number(mover) : Eigen::Index(mover)));
+    }
+  return rates;
+}
+
 Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
                              const Box& box) {
   Team alone;

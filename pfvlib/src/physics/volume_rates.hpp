@@ -30,6 +30,10 @@ void volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& veloci
                   const Box& box, Team& team, Eigen::VectorXd& rates);
 Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
                              const Box& box);
+/// The same for given velocities of the walls: 3 x (N + 6), the last six those of xlo ... zhi.
+Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion);
+/// Velocities (m/s) of the spheres followed by those of the six faces: 3 x (N + 6).
+Eigen::Matrix3Xd with_face_velocities(const Eigen::Matrix3Xd& velocities, const Box& box);
 
 /// Base area (m²) of each pore on each of its faces, in the order of `boundaries.contacts`.
 std::vector<double> base_areas(const PoreNetwork& network, const PoreBoundaries& boundaries,

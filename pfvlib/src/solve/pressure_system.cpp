@@ -97,7 +97,7 @@ std::vector<Isolated> find_isolated(const PoreNetwork& network,
     if (anchored[root]) continue;
     if (place[root] < 0) {
       place[root] = static_cast<int>(isolated.size());
-      isolated.push_back({{}, unknown});
+      isolated.push_back({{}, unknown, 0.0});
     }
     isolated[place[root]].pores.push_back(pore);
   }
@@ -180,9 +180,10 @@ PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& c
       if (unknowns.of_pore[pore] >= 0) diagonal[unknowns.of_pore[pore]] += storage[pore];
   } else {
     system.isolated = find_isolated(network, conductances, unknowns);
-    for (const Isolated& isolated : system.isolated) {
+    for (Isolated& isolated : system.isolated) {
       double& d = diagonal[isolated.unknown];
-      d = d > 0.0 ? 2.0 * d : 1.0;
+      isolated.pin = d > 0.0 ? d : 1.0;
+      d += isolated.pin;
     }
   }
   system.matrix = compress(off_diagonal, diagonal);

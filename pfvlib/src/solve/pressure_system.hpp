@@ -34,6 +34,7 @@ void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundari
 struct Isolated {
   std::vector<int> pores;
   int unknown;  ///< the one that is held at the reference pressure
+  double pin;   ///< what holds it: added to its diagonal
 };
 
 /// G p = b (Chareyre et al. 2012 eq. 6; thesis eq. 4.8) for the unknown pressures.

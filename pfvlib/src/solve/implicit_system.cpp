@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/implicit_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace pfv {
+
+namespace {
+
+/// E B^1/2 by unknowns: the rows of E^T that yield, with the pores of one unknown added up, and the
+/// same entries once more by unknown.
+struct YieldingRows {
+  struct Entry {
+    int index;  ///< unknown, or row
+    Eigen::Vector3d value;
+  };
+  std::vector<std::vector<Entry>> of_row;
+  std::vector<std::vector<Entry>> of_unknown;
+};
+
+YieldingRows yielding_rows(const Unknowns& unknowns, const ForceMatrix& energy_forces,
+                           const Eigen::VectorXd& yielding) {
+  YieldingRows rows;
+  rows.of_unknown.resize(unknowns.count);
+  std::vector<YieldingRows::Entry> entries;
+  for (int row = 0; row < energy_forces.rows(); ++row) {
+    if (!(yielding[row] > 0.0)) continue;
+    entries.clear();
+    for (int e = energy_forces.row_begin[row]; e < energy_forces.row_begin[row + 1]; ++e) {
+      const int unknown = unknowns.of_pore[energy_forces.pore[e]];
+      if (unknown != Unknowns::imposed)
+        entries.push_back({unknown, std::sqrt(yielding[row]) * energy_forces.value.col(e)});
+    }
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const auto& a, const auto& b) { return a.index < b.index; });
+    auto& merged = rows.of_row.emplace_back();
+    for (const auto& entry : entries) {
+      if (!merged.empty() && merged.back().index == entry.index)
+        merged.back().value += entry.value;
+      else
+        merged.push_back(entry);
+    }
+    const int number = static_cast<int>(rows.of_row.size()) - 1;
+    for (const auto& entry : merged)
+      rows.of_unknown[entry.index].push_back({number, entry.value});
+  }
+  return rows;
+}
+
+/// Whether a uniform pressure in the set would move something: it does not where the set surrounds what
+/// yields on all sides.
+bool yields_to(const Isolated& isolated, const Unknowns& unknowns, const YieldingRows& rows) {
+  std::vector<int> members;
+  for (const int pore : isolated.pores) members.push_back(unknowns.of_pore[pore]);
+  std::sort(members.begin(), members.end());
+  members.erase(std::unique(members.begin(), members.end()), members.end());
+  std::map<int, std::pair<Eigen::Vector3d, double>> sums;  // by row: the sum and its largest part
+  for (const int unknown : members)
+    for (const auto& entry : rows.of_unknown[unknown]) {
+      auto& [sum, largest] =
+          sums.try_emplace(entry.index, Eigen::Vector3d::Zero(), 0.0).first->second;
+      sum += entry.value;
+      largest = std::max(largest, entry.value.norm());
+    }
+  return std::any_of(sums.begin(), sums.end(), [](const auto& row) {
+    constexpr double round_off = 1e-10;
+    return row.second.first.norm() > round_off * row.second.second;
+  });
+}
+
+}  // namespace
+
+ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
+                                 const ForceMatrix& energy_forces,
+                                 const Eigen::VectorXd& yielding) {
+  const YieldingRows rows = yielding_rows(unknowns, energy_forces, yielding);
+  const SymmetricMatrix& g = system.matrix;
+  ImplicitSystem result;
+  std::vector<double> pins(unknowns.count, 0.0);
+  for (const Isolated& isolated : system.isolated) {
+    if (yields_to(isolated, unknowns, rows))
+      pins[isolated.unknown] = isolated.pin;
+    else
+      result.isolated.push_back(isolated);
+  }
+  SymmetricMatrix& a = result.matrix;
+  a.row_begin.reserve(g.row_begin.size());
+  a.column.reserve(14 * g.column.size());
+  a.value.reserve(14 * g.column.size());
+  std::vector<double> sum(unknowns.count, 0.0);
+  std::vector<int> touched, last_row(unknowns.count, -1);
+  for (int i = 0; i < unknowns.count; ++i) {
+    touched.clear();
+    const auto add = [&](int j, double value) {
+      if (last_row[j] != i) {
+        last_row[j] = i;
+        sum[j] = 0.0;
+        touched.push_back(j);
+      }
+      sum[j] += value;
+    };
+    for (int k = g.row_begin[i]; k < g.row_begin[i + 1]; ++k) add(g.column[k], g.value[k]);
+    add(i, -pins[i]);
+    for (const auto& mine : rows.of_unknown[i])
+      for (const auto& other : rows.of_row[mine.index])
+        add(other.index, mine.value.dot(other.value));
+    std::sort(touched.begin(), touched.end());
+    for (const int j : touched) {
+      a.column.push_back(j);
+      a.value.push_back(sum[j]);
+    }
+    a.row_begin.push_back(static_cast<int>(a.column.size()));
+  }
+  return result;
+}
+
+}  // namespace pfv
