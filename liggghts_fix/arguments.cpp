@@ -32,6 +32,14 @@ class Words {
     return true;
   }
 
+  /// Whether the next word is a number rather than a keyword.
+  bool number_comes() const {
+    if (done()) return false;
+    char* end = nullptr;
+    std::strtod(words_[next_].c_str(), &end);
+    return end != words_[next_].c_str();
+  }
+
   std::string word(const char* what) {
     if (done()) fail(std::string(what) + " is missing");
     return words_[next_++];
@@ -191,6 +199,18 @@ void parse_profile(Words& words, PfvSettings& settings) {
   settings.profile = profile;
 }
 
+void parse_sensors(Words& words, PfvSettings& settings) {
+  PfvSensorOutput sensors;
+  sensors.every = words.count("the number of steps");
+  sensors.path = words.word("the file's name");
+  do {
+    Eigen::Vector3d place;
+    for (double& coordinate : place) coordinate = words.number("a sensor's coordinate");
+    sensors.places.push_back(place);
+  } while (words.number_comes());
+  settings.sensors = sensors;
+}
+
 void parse_keyword(Words& words, PfvSettings& settings) {
   const std::string keyword = words.keyword();
   if (keyword == "viscosity") settings.fluid.viscosity = words.number("the viscosity");
@@ -211,11 +231,12 @@ void parse_keyword(Words& words, PfvSettings& settings) {
     settings.options.solver = pfv::solver_named(words.word("the solver's name"));
   else if (keyword == "output") parse_fields(words, settings);
   else if (keyword == "profile") parse_profile(words, settings);
+  else if (keyword == "sensors") parse_sensors(words, settings);
   else
     throw pfv::InputError("unknown keyword '" + keyword +
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
                           "pressure_profile, retriangulate, couple_every, coupling, "
-                          "time_step_check, conductance, solver, output and profile");
+                          "time_step_check, conductance, solver, output, profile and sensors");
 }
 
 /// A profile makes its face one of imposed pressure, which a face with another boundary is not.

@@ -53,6 +53,12 @@ struct PfvProfileOutput {
   std::string path;
 };
 
+struct PfvSensorOutput {
+  std::vector<Eigen::Vector3d> places;  ///< m
+  int every;
+  std::string path;
+};
+
 struct PfvFieldOutput {
   int every;
   std::string path;  ///< ends in .pvd
@@ -75,6 +81,7 @@ struct PfvSettings {
   double safety = 1.0;  ///< part of the explicit limit that a step may reach
   std::optional<PfvFieldOutput> fields;
   std::optional<PfvProfileOutput> profile;
+  std::optional<PfvSensorOutput> sensors;
 };
 
 /// The settings of `fix ID group pfv ...`; `arg` holds the words behind the style. Throws

@@ -25,7 +25,16 @@ std::string header_of(const PfvProfileOutput& profile) {
   return header.str();
 }
 
-/// The rows of a profile that an earlier run has written up to `time`; none where the file is
+/// Places with more digits than a file's name would show; they are only read by eye and by scripts.
+std::string header_of(const PfvSensorOutput& sensors) {
+  std::ostringstream header;
+  header << "time" << std::setprecision(6);
+  for (const Eigen::Vector3d& place : sensors.places)
+    header << ',' << place.x() << ' ' << place.y() << ' ' << place.z();
+  return header.str();
+}
+
+/// The rows of a file that an earlier run has written up to `time`; none where the file is
 /// absent or of another kind.
 std::string rows_until(const std::string& path, const std::string& header, double time) {
   std::ifstream file(path);
@@ -50,29 +59,54 @@ bool PfvSchedule::due(std::int64_t step) {
   return due;
 }
 
+PfvRowFile::PfvRowFile(std::string path, std::string header, int every)
+    : path_(std::move(path)), header_(std::move(header)), schedule_(every) {
+  pfv::require_folder_of(path_);
+}
+
+void PfvRowFile::resume(std::int64_t step, double time) {
+  schedule_.resume_after(step);
+  resumed_time_ = time;
+}
+
+void PfvRowFile::write_row(const std::vector<double>& values) {
+  if (!file_.is_open()) {
+    const std::string rows =
+        resumed_time_ ? rows_until(path_, header_, *resumed_time_) : std::string();
+    file_.open(path_, std::ios::trunc);
+    file_ << header_ << '\n' << rows << std::setprecision(12);
+  }
+  const char* separator = "";
+  for (const double value : values) {
+    file_ << separator << value;
+    separator = ",";
+  }
+  file_ << '\n' << std::flush;
+  if (!file_) throw pfv::FileError("'" + path_ + "' cannot be written; is the disk full?");
+}
+
 PfvResultFiles::PfvResultFiles(const PfvSettings& settings)
-    : fields_(settings.fields), profile_(settings.profile) {
+    : fields_(settings.fields), profile_(settings.profile), sensors_(settings.sensors) {
   if (fields_) {
     pfv::require_folder_of(fields_->path);
     field_schedule_ = PfvSchedule(fields_->every);
   }
-  if (profile_) {
-    pfv::require_folder_of(profile_->path);
-    profile_schedule_ = PfvSchedule(profile_->every);
-  }
+  if (profile_) profile_file_.emplace(profile_->path, header_of(*profile_), profile_->every);
+  if (sensors_) sensor_file_.emplace(sensors_->path, header_of(*sensors_), sensors_->every);
 }
 
 void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWrittenStep> written) {
   written_ = std::move(written);
-  resumed_time_ = time;
   field_schedule_.resume_after(step);
-  profile_schedule_.resume_after(step);
+  if (profile_file_) profile_file_->resume(step, time);
+  if (sensor_file_) sensor_file_->resume(step, time);
 }
 
 void PfvResultFiles::write(const pfv::FlowModel& flow, const pfv::Packing& packing,
                            std::int64_t step) {
   if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, step);
-  if (profile_ && profile_schedule_.due(step)) write_profile_row(flow);
+  if (profile_file_ && profile_file_->due(step)) profile_file_->write_row(profile_row(flow));
+  if (sensor_file_ && sensor_file_->due(step)) sensor_file_->write_row(sensor_row(flow));
 }
 
 void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
@@ -85,7 +119,7 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
     return stem + "_grains_" + std::to_string(s) + ".vtu";
   };
   flow.write_fields(fluid(base, step));
-  pfv::write_spheres(grains(base, step), packing, flow.forces());
+  pfv::write_spheres(grains(base, step), packing, flow.forces(), {displacements(packing)});
   written_.push_back({step, flow.time()});
 
   std::vector<pfv::CollectionEntry> entries;
@@ -97,26 +131,34 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
   pfv::write_collection(fields_->path, entries);
 }
 
-void PfvResultFiles::open_profile() {
-  const std::string header = header_of(*profile_);
-  const std::string rows =
-      resumed_time_ ? rows_until(profile_->path, header, *resumed_time_) : std::string();
-  profile_file_.open(profile_->path, std::ios::trunc);
-  profile_file_ << header << '\n' << rows << std::setprecision(12);
+/// From where each grain was when it was first written, m.
+Eigen::Matrix3Xd PfvResultFiles::displacements(const pfv::Packing& packing) {
+  Eigen::Matrix3Xd moved(3, packing.size());
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    const Eigen::Vector3d place = packing.positions.col(k);
+    moved.col(k) = place - first_places_.try_emplace(packing.ids[k], place).first->second;
+  }
+  return moved;
 }
 
-void PfvResultFiles::write_profile_row(const pfv::FlowModel& flow) {
-  if (!profile_file_.is_open()) open_profile();
+std::vector<double> PfvResultFiles::profile_row(const pfv::FlowModel& flow) const {
   const pfv::Box& box = flow.box();
   const double lower = box.lower[profile_->axis], upper = box.upper[profile_->axis];
-  profile_file_ << flow.time();
+  std::vector<double> row{flow.time()};
   for (int plane = 0; plane < profile_->planes; ++plane) {
     const double place = lower + relative_position(*profile_, plane) * (upper - lower);
-    profile_file_ << ',' << flow.plane_pressure(profile_->axis, place);
+    row.push_back(flow.plane_pressure(profile_->axis, place));
   }
-  profile_file_ << '\n' << std::flush;
-  if (!profile_file_)
-    throw pfv::FileError("'" + profile_->path + "' cannot be written; is the disk full?");
+  return row;
+}
+
+/// A sensor outside the flow box, which may shrink below it, reads the pressure of the nearest place.
+std::vector<double> PfvResultFiles::sensor_row(const pfv::FlowModel& flow) const {
+  const pfv::Box& box = flow.box();
+  std::vector<double> row{flow.time()};
+  for (const Eigen::Vector3d& place : sensors_->places)
+    row.push_back(flow.pressure_at(place.cwiseMax(box.lower).cwiseMin(box.upper)));
+  return row;
 }
 
 }  // namespace LAMMPS_NS

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,25 @@ struct PfvWrittenStep {
   double time;  ///< of the flow, s
 };
 
+/// A file of comma-separated rows that a restarted run goes on with.
+class PfvRowFile {
+ public:
+  /// Throws pfv::InputError where the folder is missing or cannot be written.
+  PfvRowFile(std::string path, std::string header, int every);
+
+  /// Keeps the rows that the run before has written up to the flow time `time`.
+  void resume(std::int64_t step, double time);
+  bool due(std::int64_t step) { return schedule_.due(step); }
+  /// Throws pfv::FileError.
+  void write_row(const std::vector<double>& values);
+
+ private:
+  std::string path_, header_;
+  PfvSchedule schedule_;
+  std::optional<double> resumed_time_;
+  std::ofstream file_;
+};
+
 class PfvResultFiles {
  public:
   /// Throws pfv::InputError where a folder is missing or cannot be written.
@@ -47,15 +67,17 @@ class PfvResultFiles {
 
  private:
   void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, std::int64_t step);
-  void write_profile_row(const pfv::FlowModel& flow);
-  void open_profile();
+  std::vector<double> profile_row(const pfv::FlowModel& flow) const;
+  std::vector<double> sensor_row(const pfv::FlowModel& flow) const;
+  Eigen::Matrix3Xd displacements(const pfv::Packing& packing);
 
   std::optional<PfvFieldOutput> fields_;
   std::optional<PfvProfileOutput> profile_;
-  PfvSchedule field_schedule_, profile_schedule_;
+  std::optional<PfvSensorOutput> sensors_;
+  PfvSchedule field_schedule_;
   std::vector<PfvWrittenStep> written_;
-  std::optional<double> resumed_time_;
-  std::ofstream profile_file_;
+  std::optional<PfvRowFile> profile_file_, sensor_file_;
+  std::map<std::int64_t, Eigen::Vector3d> first_places_;  ///< by tag
 };
 
 }  // namespace LAMMPS_NS

@@ -6,16 +6,15 @@
     run.py study               the tables of doc/oedometer.md: sizes, seeds, thresholds, times
 """
 import json
-import os
 import re
-import resource
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
-BIN = Path(os.environ.get("PFV_BIN", SCENE.parents[1] / "build" / "bin"))
+sys.path.insert(0, str(SCENE.parent / "common"))
+from scene import BadSetting, Failure, Progress, liggghts, pfv_solve, primes
+import scene
+
 SIDE, DENSITY, CONFINEMENT = 0.1, 2600.0, 76.0e3  # m, kg/m3, Pa
 
 KEYS = {
@@ -32,40 +31,13 @@ KEYS = {
 }
 
 
-class Failure(Exception):
-    """What went wrong and what to do, in one line."""
-
-
-class BadSetting(Failure):
-    """A word of the command that means nothing here."""
-
-
 def parse(words):
-    settings = {key: default for key, (_, default, _) in KEYS.items()}
-    for word in words:
-        key, equals, value = word.partition("=")
-        if not equals or key not in KEYS:
-            known = ", ".join(f"{k} ({what})" for k, (_, _, what) in KEYS.items())
-            raise BadSetting(f"'{word}' is not KEY=VALUE with a known key: {known}")
-        try:
-            settings[key] = KEYS[key][0](value)
-        except ValueError:
-            raise BadSetting(f"{key} needs a number, not '{value}'") from None
+    settings = scene.parse(words, KEYS)
     if settings["N"] < 100 or settings["SEED"] < 1 or settings["LOAD"] <= 0:
         raise BadSetting("N must be at least 100, SEED at least 1, LOAD above 0")
     if settings["BASE"] not in ("floating", "fixed"):
         raise BadSetting("BASE must be floating or fixed")
     return settings
-
-
-def primes(seed):
-    """Five distinct primes above 10000, as LIGGGHTS wants them, others for each seed."""
-    found, candidate = [], 10000 + 1000 * seed
-    while len(found) < 5:
-        candidate += 1
-        if all(candidate % d for d in range(2, int(candidate**0.5) + 1)):
-            found.append(candidate)
-    return found
 
 
 def solid_fraction(grains):
@@ -97,71 +69,11 @@ def piston_mass(grains):
     return 0.02 * mean_radius(grains) / mean_radius(1000)
 
 
-class Progress:
-    """One line about every five seconds: percent, simulated time, estimated time left."""
-
-    def __init__(self, stage, first, last, step_time):
-        self.stage, self.first, self.last, self.step_time = stage, first, last, step_time
-        self.start = self.shown = time.monotonic()
-
-    def at(self, step):
-        now = time.monotonic()
-        if now - self.shown < 5.0 or step <= self.first:
-            return
-        self.shown = now
-        done = (step - self.first) / (self.last - self.first)
-        left = (now - self.start) * (1.0 - done) / done
-        simulated = (step - self.first) * self.step_time
-        print(f"  {self.stage:<14s} {100 * done:3.0f} %   "
-              + (f"simulated {simulated:.4f} s   " if simulated else "")
-              + f"about {left:.0f} s left", flush=True)
-
-
-def child_seconds():
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime
-
-
-def liggghts(script, variables, log, progress=None):
-    """Runs a script; returns what it printed behind the word `oedometer`, by first word, and the
-    CPU seconds."""
-    program = BIN / "liggghts-pfv"
-    if not program.exists():
-        raise Failure(f"{program.name} is not built; run ./run.sh, which builds it")
-    command = ["stdbuf", "-oL", str(program), "-in", script, "-log", log + ".log"]
-    for key, value in variables.items():
-        command += ["-var", key, f"{value:.17g}" if isinstance(value, float) else str(value)]
-    before = child_seconds()
-    said, tail = {}, []
-    process = subprocess.Popen(command, cwd=SCENE, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, text=True, errors="replace")
-    with open(SCENE / (log + ".txt"), "w") as copy:
-        for line in process.stdout:
-            copy.write(line)
-            tail = (tail + [line.strip()])[-40:]
-            words = line.split()
-            if words[:1] == ["oedometer"]:
-                said[words[1]] = words[2:]
-            elif progress and words and words[0].isdigit():
-                progress.at(int(words[0]))
-    if process.wait() != 0:
-        errors = [line for line in tail if "ERROR" in line] or tail[-1:]
-        raise Failure(f"{script} stopped: {errors[0] if errors else 'no message'} "
-                      f"(see {log}.txt)")
-    return said, child_seconds() - before
-
-
 def permeability(dump, bottom, height, viscosity, report):
     """Permeability (m2) of a dump with frictionless side walls, as in the coupled run."""
-    command = [str(BIN / "pfv"), "solve", "--packing", dump, "--wall", "symmetry",
-               "--box", "0", str(SIDE), "0", str(SIDE),
-               f"{bottom:.17g}", f"{bottom + height:.17g}",
-               "--face", "zlo:pressure=5000", "--face", "zhi:pressure=0",
-               "--viscosity", f"{viscosity:.17g}", "--report", report]
-    done = subprocess.run(command, cwd=SCENE, capture_output=True, text=True)
-    if done.returncode != 0:
-        raise Failure(f"pfv solve on {dump}: {done.stderr.strip()}")
-    return json.loads((SCENE / report).read_text())["permeability"]
+    box = (0.0, SIDE, 0.0, SIDE, bottom, bottom + height)
+    return pfv_solve(SCENE, dump, box, viscosity, report, "--wall", "symmetry",
+                     "--face", "zlo:pressure=5000", "--face", "zhi:pressure=0")["permeability"]
 
 
 def prepare(settings):
@@ -172,13 +84,13 @@ def prepare(settings):
     print(f"sample of {grains} grains, seed {settings['SEED']}, under {CONFINEMENT / 1e3:.0f} kPa",
           flush=True)
     seeds = {f"s{k + 1}": prime for k, prime in enumerate(primes(settings["SEED"]))}
-    said, cpu = liggghts("in.prepare", {**common, **seeds}, out + "_prepare",
+    said, cpu = liggghts(SCENE, "in.prepare", {**common, **seeds}, out + "_prepare",
                          Progress("sample", 0, 20001, 0.0))
     sample = {"step": int(said["sample"][0]), "height": float(said["sample"][1]),
               "contact_step": float(said["sample"][2]), "cpu_prepare": cpu}
     force = settings["LOAD"] * SIDE**2
     print("dry test: load and unload", flush=True)
-    said, cpu = liggghts("in.dry", {**common, "dF": force}, out + "_dry")
+    said, cpu = liggghts(SCENE, "in.dry", {**common, "dF": force}, out + "_dry")
     height = {name: float(said[name][0]) for name in ("rest", "early", "loaded", "unloaded")}
     loading = (height["rest"] - height["loaded"]) / height["rest"]
     unloading = (height["unloaded"] - height["loaded"]) / height["rest"]
@@ -229,7 +141,7 @@ def couple(settings, sample, planned):
                      dF=settings["LOAD"] * SIDE**2, out=out, piston_mass=piston_mass(grains),
                      retriangulate=settings["RETRIANGULATE"])
     first, last = sample["step"], planned["rest_to"] + planned["steps"]
-    _, cpu = liggghts("in.oedometer", variables, out + "_coupled",
+    _, cpu = liggghts(SCENE, "in.oedometer", variables, out + "_coupled",
                       Progress("consolidation", first, last, planned["time_step"]))
     return {"cpu_coupled": cpu, "cpu_coupled_step": cpu / (last - first)}
 

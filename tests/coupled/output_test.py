@@ -109,6 +109,38 @@ class Output(CoupledTest):
         for ranks in (1, 2):
             self.refused(script, "flow_pores_0.vtu", ranks=ranks)
 
+    def test_sensors_read_the_pressure_where_they_are(self):
+        """Each row holds what profile planes and neighbours bracket; outside the box the nearest
+        place is read."""
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} sensors 5 s.csv 0.05 0.05 0.02 "
+                      "0.05 0.05 0.08 0.05 0.05 -1 0.05 0.05 9\nrun 10\n")
+        header, rows = self.profile("s.csv")
+        self.assertEqual(header, "time,0.05 0.05 0.02,0.05 0.05 0.08,0.05 0.05 -1,0.05 0.05 9")
+        self.assertEqual([round(row[0] / 1e-5) for row in rows], [0, 5, 10])
+        for row in rows:
+            self.assertTrue(10 > row[1] > row[2] > 0)
+            self.assertEqual(row[3:], [10, 0])
+
+    def test_sensors_need_three_coordinates_each(self):
+        self.refused(HEAD + f"fix flow all pfv {FLOW} sensors 5 s.csv 0.05 0.05\nrun 0\n",
+                     "keyword 'sensors'", "coordinate")
+
+    def test_displacement_is_counted_from_the_first_file(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+        self.liggghts(HEAD + "fix integr all nve/sphere\n" +
+                      f"fix flow all pfv {FLOW} output 10 post/flow.pvd\nrun 10\n")
+        places = {}
+        for step in (0, 10):
+            reader = vtkXMLUnstructuredGridReader()
+            reader.SetFileName(str(self.folder / "post" / f"flow_grains_{step}.vtu"))
+            reader.Update()
+            grid = reader.GetOutput()
+            places[step] = vtk_to_numpy(grid.GetPoints().GetData())
+        moved = vtk_to_numpy(grid.GetPointData().GetArray("displacement"))
+        self.assertGreater(abs(moved).max(), 1e-9)
+        self.assertTrue((moved == places[10] - places[0]).all())
+
     def test_asking_for_more_does_not_change_the_run(self):
         plain = HEAD + f"fix flow all pfv {FLOW}\n" + dump("d.dump") + "run 10\n"
         self.liggghts(plain)

@@ -29,8 +29,14 @@ void write_report(const std::string& path, const Report& report);
 /// (pressure, volume of its fluid), a line cell a throat (conductance, flux).
 void write_network(const std::string& path, const Flow& flow);
 
-/// Spheres as points of a .vtu: id, radius, force, velocity.
-void write_spheres(const std::string& path, const Packing& packing, const Forces& forces);
+/// Further fields of spheres, one column a sphere of the packing; an empty one is not written.
+struct SphereFields {
+  Eigen::Matrix3Xd displacement;  ///< m
+};
+
+/// Spheres as points of a .vtu: id, radius, force, velocity, mean pressure around each and `more`.
+void write_spheres(const std::string& path, const Packing& packing, const Forces& forces,
+                   const SphereFields& more = {});
 
 /// One time step of a .pvd collection; `file` is relative to the collection's folder.
 struct CollectionEntry {

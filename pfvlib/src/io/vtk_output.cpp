@@ -90,7 +90,8 @@ void add_vertex_cells(VtuFile& file, std::size_t points) {
   add_cells(file, connectivity, offsets, std::vector<std::uint8_t>(points, vertex_cell));
 }
 
-void add_sphere_values(VtuFile& file, const Packing& packing, const Forces& forces) {
+void add_sphere_values(VtuFile& file, const Packing& packing, const Forces& forces,
+                       const SphereFields& more) {
   const std::int64_t n = packing.size();
   // Zeros for grains at rest, so that every step of a collection has the same arrays.
   const Eigen::Matrix3Xd at_rest = Eigen::Matrix3Xd::Zero(3, n);
@@ -101,6 +102,7 @@ void add_sphere_values(VtuFile& file, const Packing& packing, const Forces& forc
   file.add("velocity", moving ? packing.velocities.data() : at_rest.data(), n, 3);
   if (forces.total.cols() == n) file.add("force", forces.total.data(), n, 3);
   if (forces.sphere_pressure.size() == n) file.add("pressure", forces.sphere_pressure.data(), n);
+  if (more.displacement.cols() == n) file.add("displacement", more.displacement.data(), n, 3);
   file.end("PointData");
 }
 
@@ -127,12 +129,13 @@ void write_network(const std::string& path, const Flow& flow) {
   detail::write_file(path, file.text());
 }
 
-void write_spheres(const std::string& path, const Packing& packing, const Forces& forces) {
+void write_spheres(const std::string& path, const Packing& packing, const Forces& forces,
+                   const SphereFields& more) {
   const auto n = static_cast<std::size_t>(packing.size());
   VtuFile file(packing.size(), packing.size());
   add_points(file, packing.positions);
   add_vertex_cells(file, n);
-  add_sphere_values(file, packing, forces);
+  add_sphere_values(file, packing, forces, more);
   detail::write_file(path, file.text());
 }
 

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sea beds of the thesis (Catalano 2012, chapter 6): a vessel 2.0 x 0.5 m, about 1 m of grains."""
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+
+import scene
+
+LENGTH, WIDTH = 2.0, 0.5  # m, along the wave and across it
+DENSITY, FLUID_DENSITY, GRAVITY = 2600.0, 1000.0, 9.81
+# 5000 grains of the mean size 0.06 m (thesis, tables 6.2 and 6.3); with fewer grains larger ones
+# fill the same bed
+MEAN_CUBE = (0.9**3 + 1.0 + 1.1**3) / 3.0
+SOLID = 5000 * 4.0 / 3.0 * math.pi * 0.03**3 * MEAN_CUBE  # m3
+VISCOSITY = 100.0  # Pa s at 5000 grains
+
+# friction and sinking speed (m/s) of the grains while the bed is made
+KINDS = {"dense": {"mu_fall": 0.0175, "speed": 1.0}, "loose": {"mu_fall": 0.57735, "speed": 0.15}}
+
+
+def mean_radius(grains):
+    return (SOLID / (grains * 4.0 / 3.0 * math.pi * MEAN_CUBE)) ** (1.0 / 3.0)
+
+
+def viscosity_for(grains):
+    """K/mu as with 5000 grains: K goes with d^2."""
+    return VISCOSITY * (mean_radius(grains) / 0.03) ** 2
+
+
+def prepare(folder, kind, grains, seed, out):
+    """Restart file, dump and measures of a bed; makes it where OUT has none of this kind."""
+    store = folder / f"{out}_bed.json"
+    wanted = {"kind": kind, "N": grains, "SEED": seed}
+    if store.exists() and json.loads(store.read_text())["of"] == wanted:
+        return json.loads(store.read_text())
+    radius = mean_radius(grains)
+    small = 0.9 * radius
+    contact_step = 0.1 * math.sqrt(DENSITY * 4 / 3 * math.pi * small**3 / (2 * 15e6 * small))
+    top = SOLID / (0.22 * LENGTH * WIDTH)
+    mass = DENSITY * 4.0 / 3.0 * math.pi * radius**3
+    speed = KINDS[kind]["speed"]
+    fall = round((top / speed + 2.0) / (2.5 * contact_step))
+    variables = {"N": grains, "r2": radius, "LX": LENGTH, "LY": WIDTH, "top": top,
+                 "mu_fall": KINDS[kind]["mu_fall"], "drag": mass * GRAVITY / speed, "fall": fall,
+                 "settle": round(1.5 / (2.5 * contact_step)), "out": out, "name": folder.name,
+                 **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(seed))}}
+    print(f"{kind} bed of {grains} grains, mean diameter {2 * radius:.4f} m", flush=True)
+    said, cpu = scene.liggghts(folder, "../common/in.bed", variables, out + "_bed",
+                               scene.Progress("bed", 0, fall, 2.5 * contact_step))
+    measures = {"of": wanted, "step": int(said["bed"][0]), "contact_step": float(said["bed"][1]), "cpu": cpu,
+                **measure(read_dump(folder / f"{out}.dump"))}
+    store.write_text(json.dumps(measures, indent=1) + "\n")
+    return measures
+
+
+def read_dump(path):
+    """Columns id, type, x, y, z, radius of a dump with one snapshot."""
+    return np.loadtxt(path, skiprows=9)
+
+
+def share_below(z, radius, height):
+    """Part of each sphere's volume below a height."""
+    depth = np.clip((height - z + radius) / radius, 0.0, 2.0)
+    return depth**2 * (3.0 - depth) / 4.0
+
+
+def porosity(z, radius, low, high, area=LENGTH * WIDTH):
+    """Of the layer between two heights."""
+    volume = 4.0 / 3.0 * math.pi * radius**3
+    solid = volume @ (share_below(z, radius, high) - share_below(z, radius, low))
+    return 1.0 - solid / (area * (high - low))
+
+
+def surface(z, radius):
+    """Mean height of the surface: the mean top of the highest grain in each of many columns is
+    noisy with few grains; this is the height at which the solid of the uppermost tenth would be
+    spent at the porosity of the middle."""
+    order = np.argsort(z)
+    middle = z[order[int(0.9 * len(z))]]
+    inner = porosity(z, radius, 0.2 * middle, 0.8 * middle)
+    volume = 4.0 / 3.0 * math.pi * radius**3
+    above = volume @ (1.0 - share_below(z, radius, 0.8 * middle))
+    return 0.8 * middle + above / ((1.0 - inner) * LENGTH * WIDTH)
+
+
+def core_porosity(grains, height):
+    """Porosity one mean diameter and more away from all walls and from the surface, where the layers
+    along them do not count: from a grid of points."""
+    places, radius = grains[:, 2:5], grains[:, 5]
+    margin, step = 2.0 * radius.mean(), radius.mean() / 8.0
+    axes = [np.arange(margin, end - margin, step) for end in (LENGTH, WIDTH, height)]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    solid = np.zeros(points.shape[:3], dtype=bool)
+    for place, r in zip(places, radius):
+        near = [slice(max(0, int((c - r - margin) / step)), max(0, int((c + r - margin) / step) + 2))
+                for c in place]
+        window = points[near[0], near[1], near[2]]
+        solid[near[0], near[1], near[2]] |= ((window - place)**2).sum(axis=-1) < r * r
+    return float(1.0 - solid.mean())
+
+
+def measure(grains):
+    z, radius = grains[:, 4], grains[:, 5]
+    height = surface(z, radius)
+    inner = porosity(z, radius, 0.2 * height, 0.8 * height)
+    return {"height": float(height), "top": float((z + radius).max()),
+            "core_porosity": core_porosity(grains, height), "porosity": float(inner),
+            "critical_gradient": float((1 - inner) * (DENSITY - FLUID_DENSITY) / FLUID_DENSITY)}
