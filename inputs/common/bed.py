@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 
 import scene
+from contact_stress import share_below
 
 LENGTH, WIDTH = 2.0, 0.5  # m, along the wave and across it
 DENSITY, FLUID_DENSITY, GRAVITY = 2600.0, 1000.0, 9.81
+BUOYANT = GRAVITY * (1.0 - FLUID_DENSITY / DENSITY)
 # 5000 grains of the mean size 0.06 m (thesis, tables 6.2 and 6.3); with fewer grains larger ones
 # fill the same bed
 MEAN_CUBE = (0.9**3 + 1.0 + 1.1**3) / 3.0
@@ -43,14 +45,14 @@ def prepare(folder, kind, grains, seed, out):
     speed = KINDS[kind]["speed"]
     fall = round((top / speed + 2.0) / (2.5 * contact_step))
     variables = {"N": grains, "r2": radius, "LX": LENGTH, "LY": WIDTH, "top": top,
-                 "mu_fall": KINDS[kind]["mu_fall"], "drag": mass * GRAVITY / speed, "fall": fall,
+                 "mu_fall": KINDS[kind]["mu_fall"], "g": BUOYANT, "drag": mass * BUOYANT / speed, "fall": fall,
                  "settle": round(1.5 / (2.5 * contact_step)), "out": out, "name": folder.name,
                  **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(seed))}}
     print(f"{kind} bed of {grains} grains, mean diameter {2 * radius:.4f} m", flush=True)
     said, cpu = scene.liggghts(folder, "../common/in.bed", variables, out + "_bed",
                                scene.Progress("bed", 0, fall, 2.5 * contact_step))
-    measures = {"of": wanted, "step": int(said["bed"][0]), "contact_step": float(said["bed"][1]), "cpu": cpu,
-                **measure(read_dump(folder / f"{out}.dump"))}
+    measures = {"of": wanted, "step": int(said["bed"][0]), "contact_step": float(said["bed"][1]),
+                "cpu": cpu, **measure(read_dump(folder / f"{out}.dump"))}
     store.write_text(json.dumps(measures, indent=1) + "\n")
     return measures
 
@@ -58,12 +60,6 @@ def prepare(folder, kind, grains, seed, out):
 def read_dump(path):
     """Columns id, type, x, y, z, radius of a dump with one snapshot."""
     return np.loadtxt(path, skiprows=9)
-
-
-def share_below(z, radius, height):
-    """Part of each sphere's volume below a height."""
-    depth = np.clip((height - z + radius) / radius, 0.0, 2.0)
-    return depth**2 * (3.0 - depth) / 4.0
 
 
 def porosity(z, radius, low, high, area=LENGTH * WIDTH):
@@ -86,16 +82,17 @@ def surface(z, radius):
 
 
 def core_porosity(grains, height):
-    """Porosity one mean diameter and more away from all walls and from the surface, where the layers
-    along them do not count: from a grid of points."""
+    """Porosity one mean diameter and more away from walls and surface, where the layers along them do
+    not count: from a grid of points."""
     places, radius = grains[:, 2:5], grains[:, 5]
     margin, step = 2.0 * radius.mean(), radius.mean() / 8.0
     axes = [np.arange(margin, end - margin, step) for end in (LENGTH, WIDTH, height)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     solid = np.zeros(points.shape[:3], dtype=bool)
     for place, r in zip(places, radius):
-        near = [slice(max(0, int((c - r - margin) / step)), max(0, int((c + r - margin) / step) + 2))
-                for c in place]
+        first = ((place - r - margin) / step).astype(int)
+        last = ((place + r - margin) / step).astype(int) + 2
+        near = [slice(max(0, a), max(0, b)) for a, b in zip(first, last)]
         window = points[near[0], near[1], near[2]]
         solid[near[0], near[1], near[2]] |= ((window - place)**2).sum(axis=-1) < r * r
     return float(1.0 - solid.mean())

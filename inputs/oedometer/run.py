@@ -26,6 +26,7 @@ KEYS = {
     "BASE": (str, "floating", "floating or fixed"),
     "END": (float, 2.6, "duration of the loading, T_v"),
     "RETRIANGULATE": (float, 0.01, "pore strain"),
+    "FIELDS": (int, 0, "instants of the consolidation written for ParaView; 0: none"),
     "OUT": (str, "post/sample", "where results go, without ending"),
     "KEEP": (int, 0, "1: take the sample, dry test and permeability that OUT holds"),
 }
@@ -76,30 +77,41 @@ def permeability(dump, bottom, height, viscosity, report):
                      "--face", "zlo:pressure=5000", "--face", "zhi:pressure=0")["permeability"]
 
 
-def prepare(settings):
-    """Sample and dry test. Returns what they measured."""
-    out, grains = settings["OUT"], settings["N"]
-    common = {"N": grains, "phi": solid_fraction(grains), "F0": CONFINEMENT * SIDE**2,
-              "base_moves": int(settings["BASE"] == "floating"), "out": out}
-    print(f"sample of {grains} grains, seed {settings['SEED']}, under {CONFINEMENT / 1e3:.0f} kPa",
-          flush=True)
+def common_variables(settings):
+    return {"N": settings["N"], "phi": solid_fraction(settings["N"]),
+            "F0": CONFINEMENT * SIDE**2, "base_moves": int(settings["BASE"] == "floating"),
+            "out": settings["OUT"]}
+
+
+def make_sample(settings):
+    print(f"sample of {settings['N']} grains, seed {settings['SEED']}, under "
+          f"{CONFINEMENT / 1e3:.0f} kPa", flush=True)
     seeds = {f"s{k + 1}": prime for k, prime in enumerate(primes(settings["SEED"]))}
-    said, cpu = liggghts(SCENE, "in.prepare", {**common, **seeds}, out + "_prepare",
-                         Progress("sample", 0, 20001, 0.0))
-    sample = {"step": int(said["sample"][0]), "height": float(said["sample"][1]),
-              "contact_step": float(said["sample"][2]), "cpu_prepare": cpu}
-    force = settings["LOAD"] * SIDE**2
+    said, cpu = liggghts(SCENE, "in.prepare", {**common_variables(settings), **seeds},
+                         settings["OUT"] + "_prepare", Progress("sample", 0, 20001, 0.0))
+    return {"step": int(said["sample"][0]), "height": float(said["sample"][1]),
+            "contact_step": float(said["sample"][2]), "cpu_prepare": cpu}
+
+
+def dry_test(settings):
+    """Loads and unloads the sample by LOAD without fluid."""
     print("dry test: load and unload", flush=True)
-    said, cpu = liggghts(SCENE, "in.dry", {**common, "dF": force}, out + "_dry")
+    force = settings["LOAD"] * SIDE**2
+    said, cpu = liggghts(SCENE, "in.dry", {**common_variables(settings), "dF": force},
+                         settings["OUT"] + "_dry")
     height = {name: float(said[name][0]) for name in ("rest", "early", "loaded", "unloaded")}
     loading = (height["rest"] - height["loaded"]) / height["rest"]
     unloading = (height["unloaded"] - height["loaded"]) / height["rest"]
-    sample.update(dry_height=height, loaded_bottom=float(said["loaded"][1]),
-                  dry_strain=loading, dry_strain_unloading=unloading,
-                  dry_drift=(height["early"] - height["loaded"]) / height["rest"] / loading,
-                  E_oed=settings["LOAD"] / loading, E_oed_unloading=settings["LOAD"] / unloading,
-                  cpu_dry=cpu, cpu_dry_step=cpu / 14000)
-    return sample
+    return dict(dry_height=height, loaded_bottom=float(said["loaded"][1]),
+                dry_strain=loading, dry_strain_unloading=unloading,
+                dry_drift=(height["early"] - height["loaded"]) / height["rest"] / loading,
+                E_oed=settings["LOAD"] / loading, E_oed_unloading=settings["LOAD"] / unloading,
+                cpu_dry=cpu, cpu_dry_step=cpu / 14000)
+
+
+def prepare(settings):
+    """Sample and dry test. Returns what they measured."""
+    return {**make_sample(settings), **dry_test(settings)}
 
 
 def measure_permeability(settings, sample, viscosity):
@@ -136,10 +148,11 @@ def couple(settings, sample, planned):
     variables = {key: planned[key] for key in
                  ("viscosity", "time_step", "stride", "every", "rest_to", "steps")}
     variables["report"] = max(1, planned["steps"] // 100)
-    variables.update(N=grains, phi=solid_fraction(grains), F0=CONFINEMENT * SIDE**2,
-                     base_moves=int(settings["BASE"] == "floating"),
-                     dF=settings["LOAD"] * SIDE**2, out=out, piston_mass=piston_mass(grains),
-                     retriangulate=settings["RETRIANGULATE"])
+    variables.update(common_variables(settings), dF=settings["LOAD"] * SIDE**2,
+                     piston_mass=piston_mass(grains), retriangulate=settings["RETRIANGULATE"])
+    if settings["FIELDS"]:
+        fields_every = max(1, planned["steps"] // settings["FIELDS"])
+        variables["words"] = f"output {fields_every} {out}.pvd"
     first, last = sample["step"], planned["rest_to"] + planned["steps"]
     _, cpu = liggghts(SCENE, "in.oedometer", variables, out + "_coupled",
                       Progress("consolidation", first, last, planned["time_step"]))

@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Vertical effective stress from the contact forces of LIGGGHTS' dumps."""
+import sys
+from pathlib import Path
+
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "common"))
+import contact_stress
 
 
 def read(path):
@@ -14,24 +20,9 @@ def vertical_moments(base, step):
     grains = read(base.parent / f"{base.name}_grains.{step}.txt")
     grains = grains[np.argsort(grains[:, 0])]
     contacts = read(base.parent / f"{base.name}_contacts.{step}.txt")
-    row = {int(tag): k for k, tag in enumerate(grains[:, 0])}
-    first = np.array([row[int(tag)] for tag in contacts[:, 0]])
-    second = np.array([row[int(tag)] for tag in contacts[:, 1]])
-    z, radius = grains[:, 1], grains[:, 2]
-    # The contact lies on the line of centres, so that arms are in proportion to the radii.
-    arm = (z[second] - z[first]) / (radius[first] + radius[second])
-    force = contacts[:, -1]
-    moment = np.zeros(len(grains))
-    np.add.at(moment, first, -arm * radius[first] * force)
-    np.add.at(moment, second, -arm * radius[second] * force)
-    moment += radius * abs(grains[:, 3])
-    return z, radius, moment
-
-
-def share_below(z, radius, height):
-    """Fraction of each sphere's volume below a height."""
-    depth = np.clip((height - z + radius) / radius, 0.0, 2.0)
-    return depth**2 * (3 - depth) / 4
+    moments = contact_stress.vertical_moments(grains[:, 0], grains[:, 1], grains[:, 2], contacts,
+                                              grains[:, 3])
+    return grains[:, 1], grains[:, 2], moments
 
 
 def increments(base, steps, edges, area):
@@ -40,7 +31,7 @@ def increments(base, steps, edges, area):
     sum of V sigma over the slice's volume."""
     z, radius, before = vertical_moments(base, steps[0])
     _, _, after = vertical_moments(base, steps[1])
-    below = np.array([share_below(z, radius, height) for height in edges])
+    below = np.array([contact_stress.share_below(z, radius, height) for height in edges])
     below[0], below[-1] = 0.0, 1.0
     return (np.diff(below, axis=0) @ (after - before)) / (np.diff(edges) * area)
 

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A wave whose amplitude grows in time on a dense or a loose bed (thesis sections 6.3.2, 6.3.3)."""
+import math
+
+import bed
+import scene
+import wave
+import wave_report
+
+KEYS = {
+    "N": (int, 1000, "grains"),
+    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "RATE": (float, 100.0, "growth of the amplitude, Pa/s"),
+    "AMPLITUDE": (float, 2000.0, "amplitude at the end, Pa"),
+    "TOP": (str, "plane", "plane or extent: where the flow box ends"),
+    "WORDS": (str, "", "more words for fix pfv"),
+    "OUT": (str, "post/sample", "where results go, without ending"),
+}
+THESIS = {"dense": {"porosity": 0.368, "amplitude": 1500.0},
+          "loose": {"porosity": 0.436, "amplitude": 375.0}}
+
+
+def number(value):
+    return f"{value:.0f} Pa" if math.isfinite(value) else "not reached"
+
+
+def describe(run, kind, settings):
+    thesis, figures = THESIS[kind], run.figures
+    return {"core_porosity": run.measures["core_porosity"],
+            "still_until": wave_report.still_until(run, 0.2),
+            "unstable_at": wave_report.unstable_at(run),
+            "liquefied_most": float(run.liquefied().max()),
+            "amplitude_end": float(run.state["amplitude"][-1]),
+            "thesis": thesis, "networks": int(run.state["retriangulations"][-1]),
+            "mass": float(abs(run.state["mass"]).max()),
+            "balance": float(abs(run.state["balance"]).max()), **figures}
+
+
+def print_table(d, kind, settings):
+    print(f"\nGrowing wave on a {kind} bed, {settings['N']} grains, flow box up to "
+          f"{'a plane' if settings['TOP'] == 'plane' else 'the highest grain'}")
+    print(f"  porosity away from walls    {d['core_porosity']:.3f}   thesis "
+          f"{d['thesis']['porosity']:.3f}")
+    print(f"  pressures harmonic up to    {number(d['still_until'])}   (sensors within 20 % of A, rms)")
+    print(f"  grains run away at          {number(d['unstable_at'])}   thesis about "
+          f"{d['thesis']['amplitude']:.0f} Pa")
+    print(f"  largest ∇H/i_c, v3          {d['liquefied_most']:.2f}   (1: liquefied)")
+    print(f"  networks {d['networks']}, viscosity {d['viscosity']:.4g} Pa s, time step "
+          f"{d['time_step']:.3g} s (explicit limit {d['time_step_limit']:.3g} s), CPU {d['cpu']:.0f} s")
+
+
+def work(folder, kind, words):
+    settings = scene.parse(words, KEYS)
+    if settings["N"] < 100 or settings["RATE"] <= 0 or settings["AMPLITUDE"] <= 0:
+        raise scene.BadSetting("N must be at least 100, RATE and AMPLITUDE above 0")
+    measures = bed.prepare(folder, kind, settings["N"], settings["SEED"], settings["OUT"])
+    duration = settings["AMPLITUDE"] / settings["RATE"]
+    run = wave.run(folder, settings, measures, settings["OUT"], f"{settings['RATE']:g}*v_t",
+                   duration, top=settings["TOP"], words=settings["WORDS"])
+    d = describe(run, kind, settings)
+    print_table(d, kind, settings)
+    times = [part * duration for part in (0.1, 0.4, 0.7, 1.0)]
+    wave_report.draw_state(run)
+    wave_report.draw_sensors(run)
+    wave_report.draw_stress(run, times)
+    wave_report.draw_strain(run, times[1::2])
+    checks = [("the fluid's own force balance, largest", d["balance"], "<= 1e-10",
+               d["balance"] <= 1e-10),
+              ("the fluid's mass balance, largest", d["mass"], "<= 1e-9", d["mass"] <= 1e-9)]
+    # The first hundred pascals move no grain: the bed is one at rest, and the harmonic solution holds,
+    # as far as a bed of a few grains of depth can follow it.
+    if settings["N"] >= 300:
+        checks.append(("pressures harmonic (within 20 % of A, rms) up to, Pa", d["still_until"],
+                       ">= 150", d["still_until"] >= min(150.0, 0.99 * d["amplitude_end"])))
+    if kind == "dense" and d["amplitude_end"] >= 1000:
+        early = float(run.liquefied()[run.time < 1000 / settings["RATE"]].max())
+        checks.append(("dense: largest ∇H/i_c below 1000 Pa", early, "< 0.2", early < 0.2))
+    return scene.summary(folder, settings["OUT"], {**settings, **d}, checks)

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which oscillating waves liquefy a loose bed: a map of amplitudes and periods (thesis section 6.4).
+
+    run.py [KEY=VALUE...]      called by ./run.sh wave_oscillating [KEY=VALUE...]
+"""
+import math
+import sys
+from pathlib import Path
+
+SCENE = Path(__file__).resolve().parent
+sys.path.insert(0, str(SCENE.parent / "common"))
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+import bed
+import scene
+import wave
+
+KEYS = {
+    "N": (int, 500, "grains"),
+    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "AMPLITUDES": (str, "50,150,400,800", "Pa, with commas"),
+    "PERIODS": (str, "0.5,1,2", "s, with commas"),
+    "END": (float, 6.0, "duration of each run, s"),
+    "TOP": (str, "plane", "plane or extent: where the flow box ends"),
+    "OUT": (str, "post/sample", "where results go, without ending"),
+}
+LIQUEFIED = 0.8  # of grad H / i_c: the thesis' nearly complete liquefaction
+
+
+def numbers(settings, key):
+    try:
+        values = sorted(float(word) for word in settings[key].split(","))
+    except ValueError:
+        raise scene.BadSetting(f"{key} are numbers with commas between them") from None
+    if values[0] <= 0:
+        raise scene.BadSetting(f"{key} must be above 0")
+    return values
+
+
+def consolidation_time(settings, measures):
+    """t_c = H² γ_w ε_c / (K_d σ_c) (eq. 6.31) with ε_c = 0.01 and σ_c the weight of the bed: the fluid's
+    weight cancels when K_d = K γ_w / μ."""
+    box = (0.0, bed.LENGTH, 0.0, bed.WIDTH, 0.0, measures["top"])
+    K = scene.pfv_solve(SCENE, f"{settings['OUT']}.dump", box, 1.0, f"{settings['OUT']}_K.json",
+                        "--wall", "symmetry", "--face", "zlo:pressure=1",
+                        "--face", "zhi:pressure=0")["permeability"]
+    height = measures["height"]
+    load = bed.FLUID_DENSITY * bed.GRAVITY * measures["critical_gradient"] * height
+    return height**2 * 0.01 * bed.viscosity_for(settings["N"]) / (K * load)
+
+
+def mean_over_period(run, period):
+    """grad H / i_c of the middle vertical averaged over one period: what builds up."""
+    count = max(1, round(period / np.diff(run.time).mean()))
+    return np.convolve(run.liquefied(), np.ones(count) / count, mode="valid")
+
+
+def draw(rows, settings, consolidation, base):
+    figure, axes = plt.subplots(figsize=(6, 4))
+    values = np.array([row["built_up"] for row in rows])
+    dots = axes.scatter([row["period"] for row in rows], [row["amplitude"] for row in rows],
+                        c=np.clip(values, 0, 1), s=260, cmap="coolwarm", vmin=0, vmax=1,
+                        edgecolors="k")
+    for row in rows:
+        axes.annotate(f"{row['built_up']:.2f}", (row["period"], row["amplitude"]), fontsize=7,
+                      ha="center", va="center")
+    axes.set(xscale="log", yscale="log", xlabel="period, s", ylabel="amplitude, Pa",
+             title=f"largest mean ∇H/i_c over a period, {settings['N']} grains, "
+                   f"t_c = {consolidation:.1f} s")
+    figure.colorbar(dots, label="1: liquefied")
+    figure.tight_layout()
+    figure.savefig(f"{base}_map.png", dpi=90)
+    plt.close(figure)
+
+
+def work(words):
+    settings = scene.parse(words, KEYS)
+    amplitudes, periods = numbers(settings, "AMPLITUDES"), numbers(settings, "PERIODS")
+    if settings["N"] < 100:
+        raise scene.BadSetting("N must be at least 100")
+    measures = bed.prepare(SCENE, "loose", settings["N"], settings["SEED"], settings["OUT"])
+    consolidation = consolidation_time(settings, measures)
+    rows = []
+    for period in periods:
+        for amplitude in amplitudes:
+            print(f"amplitude {amplitude:g} Pa, period {period:g} s", flush=True)
+            out = f"{settings['OUT']}_{amplitude:g}_{period:g}"
+            run = wave.run(SCENE, settings, measures, out,
+                           f"{amplitude:g}*sin({2 * math.pi / period:.12g}*v_t)", settings["END"],
+                           top=settings["TOP"], records=max(400, round(40 * settings["END"] / period)),
+                           snapshots=5)
+            rows.append({"amplitude": amplitude, "period": period, "cpu": run.figures["cpu"],
+                         "built_up": float(mean_over_period(run, period).max()),
+                         "most": float(run.liquefied().max()),
+                         "settlement": float(run.state["mean_z"][0] - run.state["mean_z"][-1]),
+                         "balance": float(abs(run.state["balance"]).max())})
+    print(f"\nOscillating wave on a loose bed of {settings['N']} grains, porosity "
+          f"{measures['core_porosity']:.3f}; t_c = {consolidation:.2f} s (eq. 6.31; thesis 10 s)")
+    print("  largest ∇H/i_c along v3, mean over a period (1: liquefied)")
+    print("  period, s  " + "".join(f"{a:10.0f} Pa" for a in amplitudes))
+    for period in periods:
+        line = [row for row in rows if row["period"] == period]
+        print(f"  {period:9.2f}  " + "".join(f"{row['built_up']:13.2f}" for row in line))
+    draw(rows, settings, consolidation, SCENE / settings["OUT"])
+    balance = max(row["balance"] for row in rows)
+    checks = [("the fluid's own force balance, largest", balance, "<= 1e-10", balance <= 1e-10)]
+    low = max(row["built_up"] for row in rows if row["amplitude"] == amplitudes[0])
+    checks.append((f"{amplitudes[0]:g} Pa does not liquefy: largest ∇H/i_c", low, f"< {LIQUEFIED}",
+                   low < LIQUEFIED))
+    if len(amplitudes) > 1 and settings["END"] >= 2.0:
+        high = max(row["built_up"] for row in rows if row["amplitude"] == amplitudes[-1])
+        checks.append(("largest ∇H/i_c, highest over lowest amplitude", high / max(low, 1e-3), "> 1",
+                       high > low))
+    return scene.summary(SCENE, settings["OUT"],
+                         {**settings, "t_c": consolidation, "runs": rows}, checks)
+
+
+scene.main("wave_oscillating", work)

@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A wave of constant amplitude on one loose bed with three conductivities (thesis section 6.3.4).
+
+    run.py [KEY=VALUE...]      called by ./run.sh wave_permeability [KEY=VALUE...]
+"""
+import sys
+from pathlib import Path
+
+SCENE = Path(__file__).resolve().parent
+sys.path.insert(0, str(SCENE.parent / "common"))
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+import bed
+import scene
+import wave
+import wave_report
+
+KEYS = {
+    "N": (int, 1000, "grains"),
+    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "AMPLITUDE": (float, 300.0, "of the wave, Pa"),
+    "END": (float, 4.0, "duration, s"),
+    "VISCOSITIES": (str, "0.1,1,10", "over that of the other wave scenes, with commas"),
+    "TOP": (str, "plane", "plane or extent: where the flow box ends"),
+    "OUT": (str, "post/sample", "where results go, without ending"),
+}
+
+
+def measures_of(run):
+    _, unbalanced, porosities = wave_report.series(run)
+    grains, moved = wave_report.displacements(run, run.snapshots()[-1][1])
+    liquefied = run.liquefied()
+    interval = np.diff(run.time).mean()
+    return {"viscosity": run.figures["viscosity"], "cpu": run.figures["cpu"],
+            "liquefied_most": float(liquefied.max()),
+            "liquefied_for": float((liquefied > 0.5).sum() * interval),
+            "porosity_change": float(porosities[-1] - porosities[0]),
+            "deviator": float(wave_report.strain_deviator(grains, moved).mean()),
+            "unbalanced": float(np.nanmax(unbalanced[1:])),
+            "networks": int(run.state["retriangulations"][-1]),
+            "balance": float(abs(run.state["balance"]).max())}
+
+
+def draw(runs, base):
+    figure, axes = plt.subplots(3, 1, figsize=(7, 8), sharex=True)
+    for run in runs:
+        times, unbalanced, porosities = wave_report.series(run)
+        label = f"{run.figures['viscosity']:.3g} Pa s"
+        axes[0].plot(run.time, run.liquefied(), label=label)
+        axes[1].semilogy(times[1:], unbalanced[1:], "o-", ms=3)
+        axes[2].plot(times, porosities, "o-", ms=3)
+    axes[0].set(ylabel="∇H / i_c, v3")
+    axes[1].set(ylabel="λ (eq. 2.16)")
+    axes[2].set(ylabel="porosity", xlabel="t, s")
+    axes[0].legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(f"{base}_permeability.png", dpi=90)
+    plt.close(figure)
+
+
+def work(words):
+    settings = scene.parse(words, KEYS)
+    try:
+        factors = [float(word) for word in settings["VISCOSITIES"].split(",")]
+    except ValueError:
+        raise scene.BadSetting("VISCOSITIES are numbers with commas between them") from None
+    if settings["N"] < 100 or min(factors) <= 0:
+        raise scene.BadSetting("N must be at least 100, VISCOSITIES above 0")
+    measures = bed.prepare(SCENE, "loose", settings["N"], settings["SEED"], settings["OUT"])
+    runs = []
+    for k, factor in enumerate(factors):
+        viscosity = factor * bed.viscosity_for(settings["N"])
+        print(f"viscosity {viscosity:.3g} Pa s", flush=True)
+        # the wave comes up within a tenth of a second
+        runs.append(wave.run(SCENE, settings, measures, f"{settings['OUT']}_{k + 1}",
+                             f"{settings['AMPLITUDE']:g}*(1.0-exp(-v_t/0.05))", settings["END"],
+                             viscosity=viscosity, top=settings["TOP"]))
+    found = [measures_of(run) for run in runs]
+    print(f"\nWave of {settings['AMPLITUDE']:g} Pa on a loose bed of {settings['N']} grains, "
+          f"porosity {measures['core_porosity']:.3f}, {settings['END']:g} s")
+    print("  viscosity   largest ∇H/i_c   time above 0.5   change of porosity   mean deviator   CPU")
+    for f in found:
+        print(f"  {f['viscosity']:7.4g} Pa s {f['liquefied_most']:10.2f} {f['liquefied_for']:14.2f} s "
+              f"{f['porosity_change']:+18.4f} {f['deviator']:17.4f} {f['cpu']:9.0f} s")
+    draw(runs, SCENE / settings["OUT"])
+    balance = max(f["balance"] for f in found)
+    checks = [("the fluid's own force balance, largest", balance, "<= 1e-10", balance <= 1e-10)]
+    if len(found) > 1 and settings["END"] >= 2.0:
+        most = [f["liquefied_most"] for f in found]
+        checks.append(("∇H/i_c, least permeable / most permeable", most[-1] / most[0], "> 1",
+                       most[-1] > most[0]))
+    return scene.summary(SCENE, settings["OUT"], {**settings, "runs": found}, checks)
+
+
+scene.main("wave_permeability", work)
