@@ -229,6 +229,10 @@ void parse_keyword(Words& words, PfvSettings& settings) {
     settings.options.conductance = pfv::conductance_law_named(words.word("the law's name"));
   else if (keyword == "solver")
     settings.options.solver = pfv::solver_named(words.word("the solver's name"));
+  else if (keyword == "precision")
+    settings.options.precision = pfv::precision_named(words.word("the precision's name"));
+  else if (keyword == "threads")
+    settings.options.threads = words.count("the number of threads");
   else if (keyword == "output") parse_fields(words, settings);
   else if (keyword == "profile") parse_profile(words, settings);
   else if (keyword == "sensors") parse_sensors(words, settings);
@@ -236,7 +240,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
     throw pfv::InputError("unknown keyword '" + keyword +
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
                           "pressure_profile, retriangulate, couple_every, coupling, "
-                          "time_step_check, conductance, solver, output, profile and sensors");
+                          "time_step_check, conductance, solver, precision, threads, output, "
+                          "profile and sensors");
 }
 
 /// A profile makes its face one of imposed pressure, which a face with another boundary is not.

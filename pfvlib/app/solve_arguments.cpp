@@ -70,12 +70,22 @@ Fluid fluid_of(const SolveArguments& arguments) {
   return fluid;
 }
 
+int threads_of(const SolveArguments& arguments) {
+  const auto threads = detail::integer(arguments.threads);
+  if (!threads || *threads < 1 || *threads > 64)
+    throw InputError("--threads: " + detail::quoted(arguments.threads) +
+                     " is no number of threads: give 1 to 64");
+  return static_cast<int>(*threads);
+}
+
 Options options_of(const SolveArguments& arguments) {
   Options options;
   options.conductance = conductance_law_named(arguments.conductance);
   options.partition = partition_named(arguments.partition);
   options.solver = solver_named(arguments.solver);
   options.ordering = ordering_named(arguments.ordering);
+  options.precision = precision_named(arguments.precision);
+  options.threads = threads_of(arguments);
   // Only what an output shows is computed: the report holds the sum of the forces.
   options.forces = arguments.forces || arguments.report;
   options.split_forces = arguments.forces.has_value();
@@ -178,6 +188,7 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
   arguments.partition = name_of(defaults.partition);
   arguments.solver = name_of(defaults.solver);
   arguments.ordering = name_of(defaults.ordering);
+  arguments.precision = name_of(defaults.precision);
   command.add_option("--conductance", arguments.conductance,
                      "conductance law of a throat (default " + arguments.conductance + ")")
       ->option_text("hydraulic_radius|effective_radius|open_throat")->group(group);
@@ -192,6 +203,14 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
                      "fill-reducing ordering (default " + arguments.ordering +
                      ": geometric; for cholmod)")
       ->option_text("auto|geometric|metis|amd")->group(group);
+  command.add_option("--precision", arguments.precision,
+                     "how cholmod keeps its factor: mixed has half as much to read a step and\n"
+                     "solves to a residual of 1e-9 (default " + arguments.precision + ")")
+      ->option_text("double|mixed")->group(group);
+  command.add_option("--threads", arguments.threads,
+                     "threads that share a step, 1 to 64; they change no result (default " +
+                     arguments.threads + ")")
+      ->option_text("N")->group(group);
   command.add_option("--repeat", arguments.repeat,
                      "further steps on the kept network, for timing, >= 1 (default: 0)")
       ->option_text("K")->group(group);

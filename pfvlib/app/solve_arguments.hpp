@@ -18,7 +18,7 @@ struct SolveArguments {
   std::string packing;
   std::vector<std::string> box, faces, patches, gravity, periodic, gradient;
   std::string wall = "no_slip", viscosity = "1e-3", density = "1000", conductance, partition, solver,
-      ordering;
+      ordering, precision, threads = "1";
   std::optional<std::string> bulk_modulus, time_step, repeat;
   std::optional<std::string> forces, report, vtk;
 };

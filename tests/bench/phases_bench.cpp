@@ -16,6 +16,7 @@
 
 #include <benchmark/benchmark.h>
 #include <map>
+#include <random>
 
 namespace {
 
@@ -144,11 +145,28 @@ void rebuild(benchmark::State& state) {
       static_cast<double>(flow.report().peak_memory_bytes) / 1048576.0;
 }
 
-void step(benchmark::State& state) {
-  const PackingArrays& packing = packing_of(static_cast<int>(state.range(0)));
-  Flow flow(drained_box(), Fluid{});
+/// Steps in which the velocities change by 0.01 %, each its own way.
+void steps(benchmark::State& state, const Options& options) {
+  PackingArrays packing = packing_of(static_cast<int>(state.range(0)));
+  Flow flow(drained_box(), Fluid{}, options);
   flow.evaluate(packing.view());
-  for (auto _ : state) benchmark::DoNotOptimize(flow.evaluate(packing.view()));
+  std::minstd_rand random(1);
+  for (auto _ : state) {
+    state.PauseTiming();
+    for (double& v : packing.velocities.reshaped())
+      v *= 1.0 + 1e-4 * (static_cast<double>(random()) / random.max() - 0.5);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(flow.evaluate(packing.view()));
+  }
+  state.counters["residual"] = flow.report().residual;
+}
+
+void step(benchmark::State& state) { steps(state, {}); }
+
+void step_mixed(benchmark::State& state) {
+  Options options;
+  options.precision = Precision::mixed;
+  steps(state, options);
 }
 
 #define PFV_PHASE(function) \
@@ -165,5 +183,6 @@ PFV_PHASE(force_matrix_build);
 PFV_PHASE(forces);
 PFV_PHASE(rebuild);
 PFV_PHASE(step);
+PFV_PHASE(step_mixed);
 
 }  // namespace

@@ -99,10 +99,16 @@ class BadInput(CommandTest):
 
     def test_unknown_keywords(self):
         for option, value in (("--wall", "slip"), ("--conductance", "poiseuille"),
-                              ("--solver", "magic"), ("--ordering", "random")):
+                              ("--solver", "magic"), ("--ordering", "random"),
+                              ("--precision", "half")):
             self.refuse_arguments(option, value, *THROUGH_FLOW, parts=["unknown", value])
         self.refuse_arguments("--solver", "klu2", "--ordering", "metis", *THROUGH_FLOW,
                               parts=["klu2", "metis"])
+        self.refuse_arguments("--solver", "cg", "--precision", "mixed", *THROUGH_FLOW,
+                              parts=["cg", "mixed", "cholmod"])
+        for threads in ("0", "65", "-1", "two", "1.5"):
+            self.refuse_arguments("--threads", threads, *THROUGH_FLOW,
+                                  parts=["--threads", threads, "1 to 64"])
 
     def test_a_compressible_fluid_without_time_step(self):
         self.refuse_arguments("--bulk-modulus", "1e9", *THROUGH_FLOW, parts=["--time-step"])

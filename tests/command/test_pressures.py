@@ -97,7 +97,9 @@ class Pressures(CommandTest):
         for arguments, key, name in ((["--solver", "klu2"], "solver", "klu2"),
                                      (["--solver", "cholmod"], "solver", "cholmod"),
                                      (["--ordering", "amd"], "ordering", "amd"),
-                                     (["--ordering", "metis"], "ordering", "metis")):
+                                     (["--ordering", "metis"], "ordering", "metis"),
+                                     (["--precision", "mixed"], "solver", "cholmod"),
+                                     (["--threads", "2"], "threads", 2)):
             report = self.report(*THROUGH_FLOW, *arguments)
             self.assertEqual(report[key], name)
             self.assert_close(report["permeability"], chosen["permeability"])

@@ -20,6 +20,11 @@ enum class SolverKind { automatic, cholmod, klu2, mumps, cg, gauss_seidel };
 /// refuse a choice (klu2 takes amd, its own).
 enum class OrderingKind { automatic, geometric, metis, amd };
 
+/// How cholmod keeps its factor. `full`: in double precision. `mixed`: in single precision, half of what a
+/// solve has to read; residuals are taken in double precision and solved for again until they are below
+/// 1e-9 of the right-hand side, from the last solution on, so that a step that changes little costs one solve.
+enum class Precision { full, mixed };
+
 /// How a throat's domain is parted among pores and spheres. `signed_angles`: signed volumes and solid
 /// angles, whose sums are the pore volume and the solid surface. `yade`: the rules of YADE's FlowEngine,
 /// to reproduce its results.
@@ -33,6 +38,9 @@ struct Options {
   Partition partition = Partition::signed_angles;
   SolverKind solver = SolverKind::automatic;
   OrderingKind ordering = OrderingKind::automatic;
+  Precision precision = Precision::full;
+  /// Threads that share a step, 1 ... 64. They change no byte of any result.
+  int threads = 1;
   OutsideGrains outside = OutsideGrains::refuse;
   /// Accumulated pore strain at which `Flow::step` triangulates anew (thesis eqs. 5.13-5.14), > 0.
   double retriangulation_strain = 0.01;
@@ -51,9 +59,11 @@ const char* name_of(ConductanceLaw law);
 const char* name_of(Partition partition);
 const char* name_of(SolverKind solver);
 const char* name_of(OrderingKind ordering);
+const char* name_of(Precision precision);
 ConductanceLaw conductance_law_named(const std::string& name);
 Partition partition_named(const std::string& name);
 SolverKind solver_named(const std::string& name);
 OrderingKind ordering_named(const std::string& name);
+Precision precision_named(const std::string& name);
 
 }  // namespace pfv

@@ -313,6 +313,7 @@ Report make_report(FlowData& flow) {
   report.conductance = name_of(flow.options.conductance);
   report.faces = balance.faces;
   report.counts = flow.counts;
+  report.threads = flow.options.threads;
   report.seconds = flow.seconds;
   report.wall_seconds.total = flow.wall_total;
   report.peak_memory_bytes = peak_memory();

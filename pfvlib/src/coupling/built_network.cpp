@@ -66,7 +66,7 @@ Eigen::Matrix3Xd forces_with_faces(const BuiltNetwork& built, const Eigen::Vecto
 }
 
 Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources) {
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x(built.unknowns.count);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x = b;
   const auto& unknown = built.unknowns.of_pore;
   for (std::size_t p = 0; p < unknown.size(); ++p)
     if (unknown[p] >= 0) b[unknown[p]] += sources[static_cast<Eigen::Index>(p)];

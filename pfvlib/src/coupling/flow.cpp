@@ -52,6 +52,7 @@ Flow::Flow(Box box, Fluid fluid, Options options) : data_(std::make_unique<FlowD
   data_->box = std::move(box);
   data_->fluid = fluid;
   data_->options = options;
+  data_->team = std::make_shared<Team>(options.threads);
 }
 
 Flow::~Flow() = default;

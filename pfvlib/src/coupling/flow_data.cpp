@@ -164,7 +164,10 @@ void FlowData::assemble_and_factor(double step) {
     for (const Isolated& isolated : built->system.isolated)
       counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
   }
-  if (new_pattern) built->solver = make_solver(options.solver, options.ordering);
+  if (new_pattern) {
+    built->solver = make_solver(options.solver, options.ordering, options.precision, team);
+    solution.setZero(built->unknowns.count);  // no trace of the old network in what follows
+  }
   if (built->unknowns.count > 0) {
     if (new_pattern) {
       const PhaseClock clock(seconds.order);
@@ -195,7 +198,7 @@ void FlowData::rates_of(const Eigen::Matrix3Xd& of_grains) {
   if (!built->volume_rate_matrix)
     built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
   ++counts.volume_rate;
-  volume_rates(*built->volume_rate_matrix, of_grains, box, team, rates);
+  volume_rates(*built->volume_rate_matrix, of_grains, box, *team, rates);
 }
 
 /// Fills in the imposed pressures, less their mean: with a large common pressure the balances would
@@ -222,7 +225,6 @@ void FlowData::solve_pressures(double at_time, LinearSolver& solver) {
   if (!box.pressure_gradient.isZero(0.0))
     sources += gradient_sources(built->network, built->conductances.value, box.pressure_gradient);
   right_hand_side(built->system, built->unknowns, box, sources, relative_pressures, right_side);
-  solution.resize(built->unknowns.count);
   if (built->unknowns.count > 0) {
     solver.solve(right_side, solution);
     ++counts.solve;
@@ -257,7 +259,7 @@ void FlowData::make_force_matrices() {
 /// S p of the active spheres and the walls.
 void FlowData::multiply_forces(const ForceMatrix& matrix, ForceParts parts,
                                Eigen::Matrix3Xd& result) {
-  multiply(matrix, force_lag.size() > 0 ? force_lag : relative_pressures, team, result);
+  multiply(matrix, force_lag.size() > 0 ? force_lag : relative_pressures, *team, result);
   if (!box.pressure_gradient.isZero(0.0))
     result += gradient_forces(built->network, built->throats, built->grains.spheres.size(), parts,
                               box.pressure_gradient);
@@ -293,7 +295,7 @@ void FlowData::compute_forces(const Packing& packing) {
     }
   }
   if (options.sphere_pressure) {
-    multiply(*built->surface_pressure, pressures, team, mean_pressures);
+    multiply(*built->surface_pressure, pressures, *team, mean_pressures);
     forces.sphere_pressure.setZero(n);
     for (Eigen::Index i = 0; i < active; ++i) forces.sphere_pressure[columns[i]] = mean_pressures[i];
   }

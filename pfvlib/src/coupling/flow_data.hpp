@@ -24,6 +24,8 @@ struct FlowData {
   Fluid fluid;
   Options options;
 
+  std::shared_ptr<Team> team;  ///< of options.threads
+
   std::unique_ptr<BuiltNetwork> built;
   bool stale = true;
   double time = 0.0, strain = 0.0;
@@ -97,7 +99,6 @@ struct FlowData {
   void end_step(double step, Coupling coupling);
   void add_strain(double step);
 
-  Team team;
   Eigen::Matrix3Xd velocities;  ///< of the active spheres
   Eigen::VectorXd sources, mean_pressures;
 };

@@ -37,6 +37,8 @@ constexpr std::array<Named<OrderingKind>, 4> orderings{{{OrderingKind::automatic
                                                         {OrderingKind::geometric, "geometric"},
                                                         {OrderingKind::metis, "metis"},
                                                         {OrderingKind::amd, "amd"}}};
+constexpr std::array<Named<Precision>, 2> precisions{
+    {{Precision::full, "double"}, {Precision::mixed, "mixed"}}};
 
 template <class Value, std::size_t N>
 const char* name_in(const std::array<Named<Value>, N>& table, Value value, const char* what) {
@@ -158,6 +160,7 @@ const char* name_of(Partition partition) {
 }
 const char* name_of(SolverKind solver) { return name_in(solvers, solver, "solver"); }
 const char* name_of(OrderingKind ordering) { return name_in(orderings, ordering, "ordering"); }
+const char* name_of(Precision precision) { return name_in(precisions, precision, "precision"); }
 
 ConductanceLaw conductance_law_named(const std::string& name) {
   return value_in(conductance_laws, name, "conductance law");
@@ -168,6 +171,9 @@ Partition partition_named(const std::string& name) {
 SolverKind solver_named(const std::string& name) { return value_in(solvers, name, "solver"); }
 OrderingKind ordering_named(const std::string& name) {
   return value_in(orderings, name, "ordering");
+}
+Precision precision_named(const std::string& name) {
+  return value_in(precisions, name, "precision");
 }
 
 void check(const Box& box) {
@@ -202,6 +208,13 @@ void check(const Options& options) {
     throw InputError("retriangulation strain is " + number_text(options.retriangulation_strain) +
                      ": give a number > 0");
   check(options.solver, options.ordering);
+  name_of(options.precision);
+  if (options.precision == Precision::mixed && resolved(options.solver) != SolverKind::cholmod)
+    throw InputError(std::string("the solver ") + name_of(options.solver) +
+                     " takes no mixed precision; use the solver cholmod, or the precision double");
+  if (options.threads < 1 || options.threads > 64)
+    throw InputError("the number of threads is " + std::to_string(options.threads) +
+                     ": give 1 to 64");
   if (!options.forces && (options.split_forces || options.sphere_pressure))
     throw InputError("split forces and sphere pressures need forces: switch those on too");
 }

@@ -33,7 +33,7 @@ bool spin_until(const Condition& condition) {
 struct Team::Workers {
   explicit Workers(int threads) : team(threads) {
     for (int thread = 1; thread < threads; ++thread)
-      others.emplace_back([this, thread] { serve(thread); });
+      others.emplace_back([this] { serve(); });
   }
 
   ~Workers() {
@@ -45,17 +45,19 @@ struct Team::Workers {
   void announce() {
     {
       const std::lock_guard<std::mutex> lock(mutex);
+      next.store(0, std::memory_order_relaxed);
       busy.store(team - 1, std::memory_order_relaxed);
       round.fetch_add(1, std::memory_order_release);
     }
     begun.notify_all();
   }
 
-  void work_of(int thread) const {
-    for (int part = thread; part < parts; part += team) call(context, part);
+  void take_parts() {
+    for (int part; (part = next.fetch_add(1, std::memory_order_relaxed)) < parts;)
+      call(context, part);
   }
 
-  void serve(int thread) {
+  void serve() {
     for (std::uint64_t seen = 0;; ++seen) {
       const auto more = [&] { return round.load(std::memory_order_acquire) != seen; };
       if (!spin_until(more)) {
@@ -63,7 +65,7 @@ struct Team::Workers {
         begun.wait(lock, more);
       }
       if (!call) return;
-      work_of(thread);
+      take_parts();
       if (busy.fetch_sub(1, std::memory_order_acq_rel) == 1) {
         const std::lock_guard<std::mutex> lock(mutex);
         finished.notify_one();
@@ -83,7 +85,7 @@ struct Team::Workers {
   const void* context = nullptr;
   int parts = 0;
   std::atomic<std::uint64_t> round{0};
-  std::atomic<int> busy{0};
+  std::atomic<int> busy{0}, next{0};
   std::mutex mutex;
   std::condition_variable begun, finished;
   std::vector<std::thread> others;
@@ -104,7 +106,7 @@ void Team::run_parts(int parts, Call call, const void* context) {
   workers_->context = context;
   workers_->parts = parts;
   workers_->announce();
-  workers_->work_of(0);
+  workers_->take_parts();
   workers_->wait();
 }
 

@@ -18,8 +18,8 @@ class Team {
 
   int threads() const { return threads_; }
 
-  /// Calls work(part) for each part in 0 ... parts - 1, part p on thread p % threads, each thread in
-  /// ascending order; returns when all are done. `work` must not throw.
+  /// Calls work(part) for each part in 0 ... parts - 1, each thread taking the next part that is left;
+  /// returns when all are done. `work` must not throw.
   template <class Work>
   void run(int parts, const Work& work) {
     run_parts(parts, [](const void* context, int part) {

@@ -6,6 +6,7 @@
 
 #include <Amesos2.hpp>
 #include <Amesos2_SolverCore_def.hpp>  // the library instantiates it for its own solvers only
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -22,8 +23,13 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   static constexpr const char* name = "CholmodSupernodal";
 
   /// `permutation`: see CholmodFactor::analyze.
-  CholmodSupernodal(Teuchos::RCP<const Matrix> matrix, std::vector<int> permutation)
-      : Base(matrix, Teuchos::null, Teuchos::null), permutation_(std::move(permutation)) {}
+  /// `single`: see SupernodalSolve.
+  CholmodSupernodal(Teuchos::RCP<const Matrix> matrix, std::vector<int> permutation, bool single,
+                    std::shared_ptr<Team> team)
+      : Base(matrix, Teuchos::null, Teuchos::null),
+        permutation_(std::move(permutation)),
+        team_(std::move(team)),
+        factor_(single) {}
 
  private:
   using Vectors = Amesos2::MultiVecAdapter<Vector>;
@@ -44,7 +50,7 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   }
 
   int solve_impl(const Teuchos::Ptr<Vectors> x, const Teuchos::Ptr<const Vectors> b) const {
-    factor_.solve(Pointer::get_pointer_to_vector(b), Pointer::get_pointer_to_vector(x));
+    factor_.solve(Pointer::get_pointer_to_vector(b), Pointer::get_pointer_to_vector(x), *team_);
     return 0;
   }
 
@@ -75,6 +81,7 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   }
 
   std::vector<int> permutation_;
+  std::shared_ptr<Team> team_;
   Kokkos::View<int*, HostSpace> row_begin_;
   Kokkos::View<int*, HostSpace> column_;
   Kokkos::View<double*, HostSpace> value_;

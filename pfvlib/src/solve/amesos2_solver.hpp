@@ -9,6 +9,8 @@ namespace pfv {
 
 /// A direct solver behind Amesos2 on a Tpetra matrix, on the calling rank alone: it talks to no
 /// other rank and needs no MPI_Init. The solver must be resolved and take the ordering.
-std::unique_ptr<LinearSolver> make_amesos2_solver(SolverKind solver, OrderingKind ordering);
+std::unique_ptr<LinearSolver> make_amesos2_solver(SolverKind solver, OrderingKind ordering,
+                                                  Precision precision,
+                                                  std::shared_ptr<Team> team);
 
 }  // namespace pfv

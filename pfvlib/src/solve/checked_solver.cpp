@@ -74,7 +74,7 @@ void CheckedSolver::factor(const SymmetricMatrix& matrix) {
 void CheckedSolver::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   require(is_factored_, "solve was called without a factor");
   require(b.size() == size_, "the right-hand side has another length than the matrix");
-  x.resize(size_);
+  if (x.size() != size_) x.setZero(size_);
   if (size_ == 0) return;
   guarded("solve", [&] { solve_system(b, x); });
   require(x.allFinite(), "the solution is not finite; look at the boundary pressures, fluxes and "

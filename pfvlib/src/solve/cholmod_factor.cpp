@@ -54,7 +54,7 @@ double diagonal_entry(const SymmetricRows& matrix, int row) {
 
 }  // namespace
 
-CholmodFactor::CholmodFactor() {
+CholmodFactor::CholmodFactor(bool single) : solve_(single) {
   cholmod_start(&common_);
   common_.print = 0;
   common_.error_handler = nullptr;

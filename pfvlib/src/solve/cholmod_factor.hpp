@@ -21,7 +21,8 @@ struct SymmetricRows {
 /// Silent; every failure is a SolverError.
 class CholmodFactor {
  public:
-  CholmodFactor();
+  /// `single`: see SupernodalSolve.
+  explicit CholmodFactor(bool single = false);
   ~CholmodFactor();
   CholmodFactor(const CholmodFactor&) = delete;
   CholmodFactor& operator=(const CholmodFactor&) = delete;
@@ -33,7 +34,7 @@ class CholmodFactor {
   /// positive definite, or so nearly singular that rounding has used up every digit of a pivot.
   void factorize(const SymmetricRows& matrix);
   /// x = A^-1 b.
-  void solve(const double* b, double* x) { solve_.solve(b, x); }
+  void solve(const double* b, double* x, Team& team) { solve_.solve(b, x, team); }
   /// Stored entries of the analysed L, with the zeros that relaxed supernodes take in.
   std::size_t entries() const { return solve_.entries(); }
 

@@ -46,12 +46,15 @@ void check(SolverKind solver, OrderingKind ordering) {
                    ", or the solver cholmod");
 }
 
-std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering) {
+std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering,
+                                          Precision precision, std::shared_ptr<Team> team) {
   check(solver, ordering);
   switch (resolved(solver)) {
     case SolverKind::cg: return std::make_unique<ConjugateGradient>();
     case SolverKind::gauss_seidel: return std::make_unique<GaussSeidel>();
-    default: return make_amesos2_solver(resolved(solver), ordering);
+    default:
+      if (!team) team = std::make_shared<Team>();
+      return make_amesos2_solver(resolved(solver), ordering, precision, std::move(team));
   }
 }
 

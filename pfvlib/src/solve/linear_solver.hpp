@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parallel/team.hpp"
 #include "pfv/options.hpp"
 
 #include <Eigen/Core>
@@ -36,14 +37,17 @@ class LinearSolver {
   virtual void order(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd& coordinates = {}) = 0;
   /// Numeric factorisation; `matrix` has the pattern given to `order`, else SolverError.
   virtual void factor(const SymmetricMatrix& matrix) = 0;
-  /// x = A^-1 b; both of length n.
+  /// x = A^-1 b. An x of length n is where mixed precision sets out from; zeros are a good beginning.
   virtual void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;
   virtual std::string name() const = 0;
 };
 
 /// The solver for a choice of the user (automatic choices are resolved). Throws InputError for a
-/// combination that makes no sense.
-std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering);
+/// combination that makes no sense. `team` shares the solves of cholmod; null: the caller's thread does
+/// them.
+std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering,
+                                          Precision precision = Precision::full,
+                                          std::shared_ptr<Team> team = nullptr);
 
 /// Throws InputError for an ordering that the solver does not take.
 void check(SolverKind solver, OrderingKind ordering);

@@ -20,25 +20,37 @@ namespace kernels {
 
 using Block = double __attribute__((vector_size(block_rows * sizeof(double))));
 
-/// sum += L x for one column of a block. Reads past a block that is not full.
-template <class Factor>
-PFV_INLINE void add_product(Block& sum, const double* column, const Factor& x) {
-  Block values;
+PFV_INLINE void load(Block& values, const double* column) {
   std::memcpy(&values, column, sizeof values);
+}
+
+PFV_INLINE void load(Block& values, const float* column) {
+  float __attribute__((vector_size(block_rows * sizeof(float)))) stored;
+  std::memcpy(&stored, column, sizeof stored);
+  values = __builtin_convertvector(stored, Block);
+}
+
+/// sum += L x for one column of a block, in double precision however L is stored. Reads past a block
+/// that is not full.
+template <class Value, class Factor>
+PFV_INLINE void add_product(Block& sum, const Value* column, const Factor& x) {
+  Block values;
+  load(values, column);
   sum += values * x;
 }
 
-template <int columns>
-PFV_INLINE void fetch(const double* block) {
-  for (int k = 0; k < columns * block_rows; k += 8) __builtin_prefetch(block + k);
+template <int columns, class Value>
+PFV_INLINE void fetch(const Value* block) {
+  constexpr int cache_line = 64 / sizeof(Value);
+  for (int k = 0; k < columns * block_rows; k += cache_line) __builtin_prefetch(block + k);
 }
 
 /// z = L11^-1 y1 and y2 -= L21 z.
-template <int columns>
-PFV_INLINE void forward(const double* value, const int* row, int rows, double* y1, double* y) {
+template <int columns, class Value>
+PFV_INLINE void forward(const Value* value, const int* row, int rows, double* y1, double* y) {
   double z[columns];
   for (int j = 0; j < columns; ++j) z[j] = y1[j];
-  const double* below = value + columns;
+  const Value* below = value + columns;
   for (int j = 0; j < columns; ++j) {
     z[j] *= value[j];
     for (int i = j + 1; i < columns; ++i) z[i] -= *below++ * z[j];
@@ -57,12 +69,12 @@ PFV_INLINE void forward(const double* value, const int* row, int rows, double* y
 }
 
 /// x1 = L11^-T (y1 - L21^T x2), from the last block to the first.
-template <int columns>
-PFV_INLINE void backward(const double* value, const int* row, int rows, double* y1,
+template <int columns, class Value>
+PFV_INLINE void backward(const Value* value, const int* row, int rows, double* y1,
                          const double* y) {
-  const double* const blocks = value + columns * (columns + 1) / 2;
+  const Value* const blocks = value + columns * (columns + 1) / 2;
   const int rest = rows % block_rows;
-  const double* block = blocks + static_cast<std::int64_t>(rows - rest) * columns;
+  const Value* block = blocks + static_cast<std::int64_t>(rows - rest) * columns;
   row += rows - rest;
   Block sum[columns] = {};
   if (rest > 0) {
@@ -81,7 +93,7 @@ PFV_INLINE void backward(const double* value, const int* row, int rows, double* 
   for (int j = 0; j < columns; ++j) {
     z[j] = y1[j] - ((sum[j][0] + sum[j][2]) + (sum[j][1] + sum[j][3]));
   }
-  const double* triangle = blocks;
+  const Value* triangle = blocks;
   for (int j = columns - 1; j >= 0; --j) {
     triangle -= columns - 1 - j;
     for (int i = j + 1; i < columns; ++i) z[j] -= triangle[i - j - 1] * z[i];

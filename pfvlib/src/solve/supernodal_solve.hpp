@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parallel/team.hpp"
+
 #include <cholmod.h>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace pfv {
@@ -26,11 +29,18 @@ constexpr int block_rows = 4;
 /// Forward and backward substitution with the supernodal L of CHOLMOD, packed so that both stream
 /// through it. CHOLMOD's own solve calls the BLAS for each supernode, too small for that to pay,
 /// and reads the unused upper half of each diagonal block.
+///
+/// Threads take subtrees of the elimination tree, which share no column: the forward substitution of
+/// each gathers what it takes from the columns above in an array of its own, and these are added in a
+/// fixed order. The subtrees do not depend on the number of threads, nor does any byte of x.
 class SupernodalSolve {
  public:
   /// How many values beyond CHOLMOD's the array of L must have room for: a block that is not full
   /// is read as if it were.
   static constexpr std::size_t margin = block_rows;
+
+  /// `single`: keep L in single precision, x is then good to some 1e-7.
+  explicit SupernodalSolve(bool single) : single_(single) {}
 
   /// Cuts the supernodes of a symbolic factor into panels. It must outlive this.
   void analyze(const cholmod_factor& factor);
@@ -38,18 +48,32 @@ class SupernodalSolve {
   /// they are L for `solve` alone until the next factorisation.
   void pack(cholmod_factor& factor);
   /// x = P^T L^-T L^-1 P b.
-  void solve(const double* b, double* x);
+  void solve(const double* b, double* x, Team& team);
   /// Entries of L that a solve reads twice.
   std::size_t entries() const { return entries_; }
 
  private:
-  std::vector<Panel> panels_;
+  /// A subtree of the elimination tree, or what lies above all of them.
+  struct Part {
+    std::vector<Panel> panels;
+    std::vector<std::pair<int, int>> columns;  ///< begin and end of its ranges
+    std::vector<double> y;                     ///< of all columns
+  };
+
+  void cut(const cholmod_factor& factor, const std::vector<Panel>& panels,
+           const std::vector<int>& supernode_panels);
+  template <class Value>
+  void substitute(const Value* values, const double* b, double* x, Team& team);
+
+  bool single_;
+  std::vector<Part> subtrees_;
+  Part top_;
+  std::vector<Panel> panels_;  ///< all
   std::size_t entries_ = 0;
   const int* permutation_ = nullptr;
   const int* rows_ = nullptr;
-  const double* values_ = nullptr;
-  std::vector<double> permuted_;
-  std::vector<double> columns_;  ///< of the panel that is being packed
+  const double* values_ = nullptr;  ///< or as many numbers of single precision
+  std::vector<double> columns_;     ///< of the panel that is being packed
 };
 
 }  // namespace pfv
