@@ -211,12 +211,28 @@ void parse_sensors(Words& words, PfvSettings& settings) {
   settings.sensors = sensors;
 }
 
+void parse_model(Words& words, PfvSettings& settings) {
+  settings.grid.reset();
+  if (words.take("pfv")) return;
+  if (!words.take("darcy_grid")) words.fail("the models are pfv and darcy_grid");
+  pfv::DarcyOptions grid;
+  for (int& cells : grid.cells) cells = words.count("the number of cells");
+  while (true) {
+    if (words.take("every")) grid.refresh_every = words.count("the number of flow steps");
+    else if (words.take("drag")) grid.drag = pfv::drag_law_named(words.word("the drag law"));
+    else if (words.take("grain_motion")) grid.grain_motion = words.yes_or_no();
+    else break;
+  }
+  settings.grid = grid;
+}
+
 void parse_keyword(Words& words, PfvSettings& settings) {
   const std::string keyword = words.keyword();
   if (keyword == "viscosity") settings.fluid.viscosity = words.number("the viscosity");
   else if (keyword == "density") settings.fluid.density = words.number("the density");
   else if (keyword == "bulk_modulus") settings.fluid.bulk_modulus = words.number("the modulus");
   else if (keyword == "buoyancy") settings.options.buoyancy = words.yes_or_no();
+  else if (keyword == "model") parse_model(words, settings);
   else if (keyword == "face") parse_face(words, settings);
   else if (keyword == "patch") parse_patch(words, settings);
   else if (keyword == "pressure_profile") parse_pressure_profile(words, settings);
@@ -256,6 +272,16 @@ void apply_profiles(PfvSettings& settings) {
   }
 }
 
+void check_all(const PfvSettings& settings) {
+  pfv::check(settings.fluid);
+  pfv::check(settings.options);
+  if (!settings.grid) return;
+  pfv::check(*settings.grid, settings.fluid, settings.options);
+  if (settings.coupling != PfvCoupling::explicit_forces)
+    throw pfv::InputError("darcy_grid has no staged coupling: use `coupling explicit` (the default), "
+                          "or the model pfv");
+}
+
 void require_all_faces(const PfvSettings& settings) {
   std::string missing;
   for (const pfv::Face name : pfv::all_faces)
@@ -278,8 +304,7 @@ PfvSettings parse_pfv(int narg, char** arg) {
   for (Words words(narg, arg); !words.done();) parse_keyword(words, settings);
   require_all_faces(settings);
   apply_profiles(settings);
-  pfv::check(settings.fluid);
-  pfv::check(settings.options);
+  check_all(settings);
   return settings;
 }
 
@@ -306,8 +331,7 @@ int modify_pfv(PfvSettings& settings, int narg, char** arg) {
     throw pfv::InputError("fix_modify knows no keyword '" + keyword +
                           "'; there are viscosity, retriangulate, couple_every, safety, pressure, "
                           "flux and sealed");
-  pfv::check(changed.fluid);
-  pfv::check(changed.options);
+  check_all(changed);
   settings = changed;
   return words.taken();
 }

@@ -4,6 +4,7 @@
 #define LMP_PFV_ARGUMENTS_H
 
 #include "pfv/box.hpp"
+#include "pfv/darcy_grid.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
 
@@ -73,6 +74,7 @@ enum class PfvCoupling {
 struct PfvSettings {
   pfv::Fluid fluid;  ///< gravity is set later, from `fix gravity`
   pfv::Options options;
+  std::optional<pfv::DarcyOptions> grid;  ///< absent: the pore network
   std::array<PfvFace, 6> faces;
   std::vector<PfvPatch> patches;
   int couple_every = 1;

@@ -214,7 +214,7 @@ void FixPfv::prepare_flow(const pfv::Box& box) {
     flow_->evaluate(grains_.packing(), flow_step());
     restored_ = flow_->state();
   }
-  flow_ = std::make_unique<pfv::Flow>(box, settings_.fluid, settings_.options);
+  flow_ = pfv::make_flow(box, settings_.fluid, settings_.options, settings_.grid);
   if (restored_) flow_->set_state(*restored_);
   restored_.reset();
 }

@@ -53,7 +53,7 @@ void FixPfv::print_phases() {
     const char* name;
     double seconds;
     std::int64_t count;
-  } phases[] = {{"triangulate", done.seconds.triangulate, done.counts.triangulate},
+  } phases[] = {{settings_.grid ? "porosity" : "triangulate", done.seconds.triangulate, done.counts.triangulate},
                 {"throats", done.seconds.throats, done.counts.triangulate},
                 {"assemble", done.seconds.assemble, done.counts.triangulate},
                 {"order", done.seconds.order, done.counts.order},
@@ -78,7 +78,7 @@ void FixPfv::print_phases() {
   std::snprintf(line, sizeof line, "residual %.3g  mass error %.3g  force balance error %.3g\n",
                 done.residual, done.mass_error, done.force_balance_error);
   text += line;
-  if (!cited_)
+  if (!cited_ && !settings_.grid)
     text +=
         "Please cite, for the flow and for its coupling with the grains:\n"
         "  Chareyre, Cortis, Catalano, Barthelemy (2012) Pore-scale modeling of viscous flow and\n"

@@ -93,13 +93,35 @@ Options options_of(const SolveArguments& arguments) {
   return options;
 }
 
+int whole_number(const std::string& option, const std::string& text) {
+  const auto number = detail::integer(text);
+  if (!number || *number < 1 || *number > std::numeric_limits<int>::max())
+    throw InputError(option + ": " + detail::quoted(text) + " is no whole number >= 1");
+  return static_cast<int>(*number);
+}
+
+/// The grid of --model darcy_grid, or nothing for the pore network.
+std::optional<DarcyOptions> grid_of(const SolveArguments& arguments) {
+  if (arguments.model == "pfv") {
+    if (!arguments.cells.empty() || !arguments.drag.empty())
+      throw InputError("--cells and --drag belong to --model darcy_grid: give that too");
+    return {};
+  }
+  if (arguments.model != "darcy_grid")
+    throw InputError("--model: unknown model " + detail::quoted(arguments.model) +
+                     ": use pfv or darcy_grid");
+  if (arguments.cells.empty())
+    throw InputError("--model darcy_grid needs the numbers of cells: give --cells NX NY NZ");
+  DarcyOptions grid;
+  for (std::size_t axis = 0; axis < grid.cells.size(); ++axis)
+    grid.cells[axis] = whole_number("--cells", arguments.cells[axis]);
+  if (!arguments.drag.empty()) grid.drag = drag_law_named(arguments.drag);
+  return grid;
+}
+
 int repeats_of(const SolveArguments& arguments) {
   if (!arguments.repeat) return 0;
-  const auto repeats = detail::integer(*arguments.repeat);
-  if (!repeats || *repeats < 1 || *repeats > std::numeric_limits<int>::max())
-    throw InputError("--repeat: " + detail::quoted(*arguments.repeat) +
-                     " is no number of steps: give a whole number >= 1");
-  return static_cast<int>(*repeats);
+  return whole_number("--repeat", *arguments.repeat);
 }
 
 /// The one name that a file has, there or not yet.
@@ -189,6 +211,15 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
   arguments.solver = name_of(defaults.solver);
   arguments.ordering = name_of(defaults.ordering);
   arguments.precision = name_of(defaults.precision);
+  command.add_option("--model", arguments.model,
+                     "pores between the grains, or Darcy flow on a coarse grid (default pfv)")
+      ->option_text("pfv|darcy_grid")->group(group);
+  command.add_option("--cells", arguments.cells, "cells of darcy_grid along x, y and z")
+      ->type_size(3)->expected(1)->option_text("NX NY NZ")->group(group);
+  command.add_option("--drag", arguments.drag,
+                     std::string("drag on a grain of darcy_grid (default ") +
+                         name_of(DarcyOptions{}.drag) + ")")
+      ->option_text("di_felice|kozeny_carman")->group(group);
   command.add_option("--conductance", arguments.conductance,
                      "conductance law of a throat (default " + arguments.conductance + ")")
       ->option_text("hydraulic_radius|effective_radius|open_throat")->group(group);
@@ -228,7 +259,8 @@ void add_output_options(CLI::App& command, SolveArguments& arguments) {
       ->option_text("FILE.json")->group(group);
   command.add_option("--vtk", arguments.vtk,
                      "pores (pressure in Pa, fluid volume in m3) and throats\n"
-                     "(conductance in m3/(Pa s), flux in m3/s) for ParaView\n"
+                     "(conductance in m3/(Pa s), flux in m3/s), or cells (porosity,\n"
+                     "permeability in m2, velocity in m/s) for ParaView\n"
                      "(default: not written)")
       ->option_text("FILE.vtu")->group(group);
 }
@@ -250,6 +282,8 @@ SolveRequest request_of(const SolveArguments& arguments) {
   request.box = box_of(arguments);
   request.fluid = fluid_of(arguments);
   request.options = options_of(arguments);
+  request.grid = grid_of(arguments);
+  if (request.grid) check(*request.grid, request.fluid, request.options);
   if (arguments.time_step) request.time_step = positive("--time-step", *arguments.time_step);
   request.repeat = repeats_of(arguments);
   request.forces = arguments.forces;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pfv/box.hpp"
+#include "pfv/darcy_grid.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
 
@@ -17,6 +18,8 @@ namespace pfv::app {
 struct SolveArguments {
   std::string packing;
   std::vector<std::string> box, faces, patches, gravity, periodic, gradient;
+  std::string model = "pfv", drag;
+  std::vector<std::string> cells;
   std::string wall = "no_slip", viscosity = "1e-3", density = "1000", conductance, partition, solver,
       ordering, precision, threads = "1";
   std::optional<std::string> bulk_modulus, time_step, repeat;
@@ -29,6 +32,7 @@ struct SolveRequest {
   Box box;
   Fluid fluid;
   Options options;
+  std::optional<DarcyOptions> grid;  ///< absent: the pore network
   double time_step = 0.0;  ///< s; 0: none
   int repeat = 0;          ///< further steps on the kept network
   std::optional<std::string> forces, report, vtk;  ///< output files

@@ -4,11 +4,12 @@
 #include "coupling/grains.hpp"
 #include "coupling/phase_clock.hpp"
 #include "io/atomic_file.hpp"
-#include "pfv/flow.hpp"
+#include "pfv/darcy_grid.hpp"
 #include "pfv/io.hpp"
 
 #include <algorithm>
 #include <iomanip>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <vector>
@@ -87,7 +88,8 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
   // An output on the same stream must stay what its format says.
   for (const auto& output : {request.forces, request.report, request.vtk})
     if (output && detail::is_standard_output(*output)) return;
-  out << std::setprecision(6) << report.spheres << " spheres, " << report.pores << " pores, "
+  out << std::setprecision(6) << report.spheres << " spheres, " << report.pores
+      << (request.grid ? " cells, " : " pores, ")
       << report.unknowns << " unknowns, " << report.seconds.total << " s\n";
   if (report.permeability) out << "permeability " << *report.permeability << " m2, ";
   out << "inflow " << report.inflow << " m3/s, outflow " << report.outflow << " m3/s\n";
@@ -105,7 +107,9 @@ void solve(const SolveRequest& request, std::ostream& out, std::ostream& warning
   const double read_seconds = cpu_seconds() - start;
 
   const Packing packing = arrays.view();
-  Flow flow(request.box, request.fluid, request.options);
+  const std::unique_ptr<FlowModel> model =
+      make_flow(request.box, request.fluid, request.options, request.grid);
+  FlowModel& flow = *model;
   flow.evaluate(packing, request.time_step);
   const StepTimes step = repeat_steps(flow, packing, request);
 

@@ -33,7 +33,7 @@ class Outputs(CommandTest):
 
     def test_report_has_the_documented_keys_and_types(self):
         report = self.report(*THROUGH_FLOW)
-        self.assertEqual(set(report), {*INTEGERS, *NUMBERS, "version", "permeability",
+        self.assertEqual(set(report), {*INTEGERS, *NUMBERS, "version", "model", "permeability",
                                        "permeability_tensor", "force_sum", "solver", "ordering",
                                        "conductance", "faces", "counts", "seconds", "wall_seconds"})
         self.assertIsNone(report["permeability_tensor"])  # periodic axes only
@@ -41,7 +41,7 @@ class Outputs(CommandTest):
             self.assertIs(type(report[key]), int, key)
         for key in (*NUMBERS, "permeability"):
             self.assert_number(report[key])
-        for key in ("solver", "ordering", "conductance", "version"):
+        for key in ("solver", "ordering", "conductance", "version", "model"):
             self.assertTrue(report[key])
         self.assert_vector(report["force_sum"])
         self.assertEqual(list(report["faces"]), FACES)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pfv/box.hpp"
+#include "pfv/darcy_grid.hpp"
 #include "pfv/dense_packing.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"

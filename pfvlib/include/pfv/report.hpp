@@ -39,6 +39,7 @@ struct WallSeconds {
 /// What was done, how long it took and how well it balances; written as JSON by `write_report`
 /// with these names (doc/conventions.md holds units and signs). Absent values mean "has no meaning".
 struct Report {
+  std::string model = "pfv";  ///< or "darcy_grid", whose pores are its cells
   std::int64_t spheres = 0, hidden = 0, outside = 0, pores = 0, unknowns = 0;
   double porosity = 0, pore_volume = 0, solid_area = 0;
   double inflow = 0, outflow = 0, volume_rate_sum = 0, storage_rate = 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/balance_terms.hpp"
 #include "coupling/flow_data.hpp"
-
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,11 +58,12 @@ Eigen::VectorXd continuity_defect(const FlowData& flow) {
 /// What the digits of a double leave out of the pressures (Pa): one solve on the kept factor for the
 /// continuity defect, which is exact to the round-off of the fluxes because it is taken from
 /// pressure differences. Where a pressure is 1e6 times the differences to its neighbours, the fluxes
-/// of the rounded pressures would miss the balance by 1e6 times the machine precision. A larger
-/// correction than that is no round-off but a solve that went wrong: it is left out, and the
-/// balances show it.
+/// of the rounded pressures would miss the balance by 1e6 times the machine precision. A lattice whose
+/// grains have moved by 1e-5 of their size has pores that close to each other: there the solve itself
+/// is 1e-8 off. A correction beyond 1e-6 is no round-off but a solve that went wrong: it is left out,
+/// and the balances show it.
 Eigen::VectorXd pressure_correction(const FlowData& flow) {
-  constexpr double of_round_off = 1e-9;
+  constexpr double of_round_off = 1e-6;
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(flow.built->network.pores());
   if (flow.built->unknowns.count == 0) return none;
   Eigen::VectorXd correction = homogeneous_pressures(*flow.built, continuity_defect(flow));
@@ -97,10 +97,6 @@ std::vector<double> contact_inflows(const FlowData& flow, const Eigen::VectorXd&
   return result;
 }
 
-struct Totals {
-  double inflow = 0.0, outflow = 0.0, gross = 0.0;
-};
-
 Totals boundary_totals(const FlowData& flow, const std::vector<double>& inflows) {
   const auto& contacts = flow.built->boundaries.contacts;
   std::vector<double> of_boundary(6 + flow.solved_box.patches.size(), 0.0);
@@ -111,16 +107,6 @@ Totals boundary_totals(const FlowData& flow, const std::vector<double>& inflows)
   }
   for (const double q : of_boundary) (q > 0.0 ? totals.inflow : totals.outflow) += std::abs(q);
   return totals;
-}
-
-/// The net of all fluxes over the largest of them. Where inflow and outflow cancel within each
-/// boundary (a wave on one face) their gross sum takes its place.
-double mass_error(const Totals& totals, double volume_rate, double storage_rate) {
-  const double largest =
-      std::max({totals.inflow, totals.outflow, std::abs(volume_rate), std::abs(storage_rate)});
-  const double scale = largest > 1e-9 * totals.gross ? largest : totals.gross;
-  const double net = totals.inflow - totals.outflow - volume_rate - storage_rate;
-  return scale > 0.0 ? net / scale : 0.0;
 }
 
 /// -mu U . g / g² for the macroscopic gradient g of a periodic box.
@@ -136,29 +122,17 @@ std::optional<double> permeability_along_gradient(const FlowData& flow,
 /// not steady or not one-dimensional.
 std::optional<double> permeability(const FlowData& flow, const Totals& totals,
                                    const std::vector<double>& fluxes) {
-  if (flow.moving || flow.storage.size() > 0 || !flow.solved_box.patches.empty()) return {};
+  if (flow.moving || flow.storage.size() > 0) return {};
   if (!flow.solved_box.pressure_gradient.isZero(0.0))
     return permeability_along_gradient(flow, fluxes);
-  int open_axis = -1, open = 0;
-  for (const Face face : all_faces) {
-    const Boundary& boundary = flow.solved_box[face].boundary;
-    if (boundary.kind == Boundary::Kind::sealed) continue;
-    if (boundary.profile) return {};
-    ++open;
-    if (open == 1) open_axis = axis_of(face);
-    if (axis_of(face) != open_axis) return {};
-  }
-  if (open != 2 || flow.solved_box.periodic[open_axis]) return {};
+  const std::optional<int> axis = axis_of_flow(flow.solved_box);
+  if (!axis) return {};
   std::array<double, 2> pressure{0.0, 0.0};
   for (const auto& contact : flow.built->boundaries.contacts)
-    if (contact.face / 2 == open_axis)
+    if (contact.face / 2 == *axis)
       pressure[contact.face % 2] = flow.relative_pressures[contact.pore];
-  const double difference = std::abs(pressure[0] - pressure[1]);
-  if (!(difference > 0.0)) return {};
-  const double length = flow.solved_box.upper[open_axis] - flow.solved_box.lower[open_axis];
-  const double area = flow.solved_box.area(static_cast<Face>(2 * open_axis));
-  const double rate = 0.5 * (totals.inflow + totals.outflow);
-  return flow.fluid.viscosity * rate * length / (difference * area);
+  return permeability_of(flow.solved_box, *axis, flow.fluid.viscosity, totals,
+                         std::abs(pressure[0] - pressure[1]));
 }
 
 /// What the macroscopic gradient pushes into the pores of one period, across the surface that parts
@@ -176,31 +150,12 @@ Eigen::Vector3d driving_force(const FlowData& flow) {
 double force_balance_error(const FlowData& flow, const std::array<FaceResult, 6>& faces) {
   if (flow.fluid_forces.cols() == 0) return 0.0;
   const int spheres = flow.built->grains.spheres.size();
-  Eigen::Vector3d sum = flow.fluid_forces.leftCols(spheres).rowwise().sum();
-  double largest_area = 0.0;
-  for (const Face face : all_faces) {
-    const FaceResult& result = faces[static_cast<int>(face)];
-    sum += result.force_pressure + result.force_viscous;
-    largest_area = std::max(largest_area, flow.solved_box.area(face));
-  }
+  const Eigen::Vector3d driven = driving_force(flow);
+  Eigen::Vector3d sum = driven + flow.fluid_forces.leftCols(spheres).rowwise().sum();
+  for (const FaceResult& face : faces) sum += face.force_pressure + face.force_viscous;
   const double largest_pressure =
       flow.pressures.size() > 0 ? flow.pressures.cwiseAbs().maxCoeff() : 0.0;
-  const Eigen::Vector3d driven = driving_force(flow);
-  sum += driven;
-  const double scale = std::max(largest_pressure * largest_area, driven.norm());
-  return scale > 0.0 ? sum.norm() / scale : 0.0;
-}
-
-double residual(const FlowData& flow) {
-  const double scale = flow.right_side.norm();
-  if (flow.right_side.size() == 0 || scale == 0.0) return 0.0;
-  return (flow.right_side - multiply(flow.solved_matrix(), flow.solution)).norm() / scale;
-}
-
-std::int64_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+  return force_balance_error(sum, largest_pressure, flow.solved_box, driven.norm());
 }
 
 void fill_geometry(Report& report, FlowData& flow) {
@@ -307,7 +262,7 @@ Report make_report(FlowData& flow) {
   report.permeability_tensor = permeability_tensor(flow);
   if (flow.forces.total.cols() > 0) report.force_sum = flow.forces.total.rowwise().sum();
   report.force_balance_error = force_balance_error(flow, balance.faces);
-  report.residual = residual(flow);
+  report.residual = relative_residual(flow.solved_matrix(), flow.solution, flow.right_side);
   report.solver = flow.built->solver->name();
   report.ordering = name_of(resolved(flow.options.solver, flow.options.ordering));
   report.conductance = name_of(flow.options.conductance);

@@ -59,6 +59,7 @@ Json wall_seconds(const WallSeconds& seconds) {
 
 Json to_json(const Report& report) {
   return {{"version", version},
+          {"model", report.model},
           {"spheres", report.spheres},
           {"hidden", report.hidden},
           {"outside", report.outside},

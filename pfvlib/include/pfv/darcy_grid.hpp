@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/flow_model.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace pfv {
+
+/// Drag of the fluid on a grain of a coarse cell. `di_felice`: the drag of a single sphere times a power
+/// of the porosity, as in the CFD module that the Darcy example of PFC uses. `kozeny_carman`: what the
+/// flow itself resists, shared among the grains by volume, so that fluid and grains exchange exactly the
+/// same momentum.
+enum class DragLaw { di_felice, kozeny_carman };
+
+const char* name_of(DragLaw law);
+/// Inverse of `name_of`; throws InputError for any other name.
+DragLaw drag_law_named(const std::string& name);
+
+struct DarcyOptions {
+  std::array<int, 3> cells{1, 1, 1};  ///< along x, y, z; > 0. Two grain diameters a cell or more
+  int refresh_every = 1;              ///< steps between two looks at the porosity, > 0
+  DragLaw drag = DragLaw::di_felice;
+  /// The grains carry fluid with them and displace it. false: a steady flow through grains at rest, in
+  /// which they move, as in the example.
+  bool grain_motion = true;
+};
+
+/// Throws InputError for numbers of cells or steps < 1, and for what a grid has no place for: a bulk
+/// modulus, options that shape a pore network.
+void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options);
+
+struct DarcyData;
+
+/// Darcy flow on a coarse grid of equal cells that fill the box: the other model of a fluid between
+/// grains. Each cell has the porosity of the grains in it and a permeability from Kozeny-Carman; finite
+/// volumes give its pressure; the velocity at its centre gives the drag on its grains. It needs cells of
+/// several grains and knows pores by their share of the volume only (doc/darcy_grid.md).
+///
+/// Porosity, permeability and factor are made at the first call and kept until `refresh_every` steps
+/// have been taken, until spheres appear, vanish, enter or leave the box, or until `rebuild` asks. In
+/// between a call costs one pass over the grains and, where rates or boundary values have changed, one
+/// solve. A call after `rebuild` does not count as a step.
+///
+/// Of `Options` it takes solver, ordering, outside, forces, split_forces (the viscous part is the drag),
+/// buoyancy and sphere_pressure; periodic axes are refused.
+class DarcyGrid final : public FlowModel {
+ public:
+  DarcyGrid(Box box, Fluid fluid, DarcyOptions grid, Options options = {});
+  ~DarcyGrid() override;
+  DarcyGrid(DarcyGrid&&) noexcept;
+  DarcyGrid& operator=(DarcyGrid&&) noexcept;
+
+  const Forces& step(const Packing& packing, double dt) override;
+  const Forces& evaluate(const Packing& packing, double dt = 0.0) override;
+  /// Throw InputError: there are no stages here.
+  const Forces& step_staged(const Packing& packing, double dt,
+                            const GrainDynamics& grains) override;
+  const Forces& evaluate_staged(const Packing& packing, double dt,
+                                const GrainDynamics& grains) override;
+  int stages() const override { return 1; }
+  void rebuild() override;
+
+  void set_box(const Box& box) override;
+  const Box& box() const override;
+  const Fluid& fluid() const override;
+  const DarcyOptions& grid() const;
+
+  double time() const override;
+  double strain() const override { return 0.0; }  ///< the porosity is looked at by steps
+  FlowState state() const override;               ///< without pressures: the flow is steady
+  void set_state(FlowState state) override;
+
+  // results of the last call
+  const Forces& forces() const override;
+  const std::array<FaceResult, 6>& faces() const override;
+  std::array<Eigen::Vector3d, 6> face_forces() const override;
+  /// Linear in each cell.
+  double pressure_at(const Eigen::Vector3d& place) const override;
+  double plane_pressure(int axis, double position) const override;
+  double mean_pressure() const override;
+  /// With the drag of the last call, linearised. Cost: some 20 to 40 solves.
+  double time_step_limit(const Eigen::VectorXd& masses,
+                         const std::array<Piston, 6>& pistons = {}) override;
+  /// Looks at the porosity after the first.
+  std::int64_t retriangulations() const override;
+  std::vector<int> hidden() const override { return {}; }  ///< every grain displaces fluid
+  std::int64_t hidden_or_outside() const override;
+
+  // one entry (or column) a cell, x running fastest
+  const Eigen::VectorXd& cell_pressures() const;      ///< Pa, at the centre
+  const Eigen::VectorXd& cell_porosities() const;     ///< 1 - sum of the spheres' parts / volume
+  const Eigen::VectorXd& cell_permeabilities() const; ///< m²
+  Eigen::Matrix3Xd cell_velocities() const;  ///< m/s, fluid per total area and time against the grains
+  Eigen::Vector3d cell_lengths() const;  ///< m, edges of a cell
+  Eigen::Vector3d lower_corner() const;  ///< m, of the first cell
+
+  Report report() const override;
+  /// Hexahedra with pressure, porosity, permeability and velocity.
+  void write_fields(const std::string& path) const override;
+  const char* field_name() const override { return "cells"; }
+
+ private:
+  std::unique_ptr<DarcyData> data_;
+};
+
+/// A `DarcyGrid` where there is a grid, else a `Flow`.
+std::unique_ptr<FlowModel> make_flow(const Box& box, const Fluid& fluid, const Options& options,
+                                     const std::optional<DarcyOptions>& grid);
+
+}  // namespace pfv

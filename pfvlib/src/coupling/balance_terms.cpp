@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/balance_terms.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pfv {
+
+double mass_error(const Totals& totals, double volume_rate, double storage_rate) {
+  const double largest =
+      std::max({totals.inflow, totals.outflow, std::abs(volume_rate), std::abs(storage_rate)});
+  const double scale = largest > 1e-9 * totals.gross ? largest : totals.gross;
+  const double net = totals.inflow - totals.outflow - volume_rate - storage_rate;
+  return scale > 0.0 ? net / scale : 0.0;
+}
+
+std::optional<int> axis_of_flow(const Box& box) {
+  if (!box.patches.empty()) return {};
+  int axis = -1, open = 0;
+  for (const Face face : all_faces) {
+    const Boundary& boundary = box[face].boundary;
+    if (boundary.kind == Boundary::Kind::sealed) continue;
+    if (boundary.profile) return {};
+    ++open;
+    if (open == 1) axis = axis_of(face);
+    if (axis_of(face) != axis) return {};
+  }
+  if (open != 2 || box.periodic[axis]) return {};
+  return axis;
+}
+
+std::optional<double> permeability_of(const Box& box, int axis, double viscosity,
+                                      const Totals& totals, double difference) {
+  if (!(difference > 0.0)) return {};
+  const double length = box.upper[axis] - box.lower[axis];
+  const double area = box.area(static_cast<Face>(2 * axis));
+  const double rate = 0.5 * (totals.inflow + totals.outflow);
+  return viscosity * rate * length / (difference * area);
+}
+
+double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, const Box& box,
+                           double driven) {
+  double largest_area = 0.0;
+  for (const Face face : all_faces) largest_area = std::max(largest_area, box.area(face));
+  const double scale = std::max(largest_pressure * largest_area, driven);
+  return scale > 0.0 ? sum.norm() / scale : 0.0;
+}
+
+double relative_residual(const SymmetricMatrix& matrix, const Eigen::VectorXd& x,
+                         const Eigen::VectorXd& b) {
+  const double scale = b.norm();
+  if (b.size() == 0 || scale == 0.0) return 0.0;
+  return (b - multiply(matrix, x)).norm() / scale;
+}
+
+std::int64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace pfv

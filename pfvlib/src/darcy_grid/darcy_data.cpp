@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "darcy_grid/darcy_data.hpp"
+
+#include "coupling/phase_clock.hpp"
+#include "darcy_grid/kozeny_carman.hpp"
+#include "network/pore_boundaries.hpp"
+#include "pfv/error.hpp"
+#include "physics/time_step_limit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pfv {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+Eigen::Matrix3Xd cell_centres(const Grid& grid) {
+  Eigen::Matrix3Xd centres(3, grid.size());
+  for (int cell = 0; cell < grid.size(); ++cell) centres.col(cell) = grid.centre(cell);
+  return centres;
+}
+
+/// Columns of the active grains back among those of the packing, zero for the others.
+Eigen::Matrix3Xd spread(const Eigen::Matrix3Xd& active, const std::vector<int>& columns,
+                        Eigen::Index size) {
+  Eigen::Matrix3Xd all = Eigen::Matrix3Xd::Zero(3, size);
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    all.col(columns[i]) = active.col(static_cast<Eigen::Index>(i));
+  return all;
+}
+
+}  // namespace
+
+const Forces& DarcyData::compute(const Packing& packing, double at_time, bool advance) {
+  const double wall_start = wall_seconds();
+  {
+    const PhaseClock clock(seconds.total);
+    solved = false;
+    if (needs_look(packing)) look(packing);
+    const Eigen::Matrix3Xd velocities = active_velocities(packing, built->grains.columns);
+    moving = grid_options.grain_motion && !at_rest(packing, box);
+    cells.carried = moving ? grain_velocities(built->overlaps, velocities)
+                           : Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, built->grid.size()));
+    update_rates();
+    refuse_undetermined();
+    solve_pressures(at_time);
+    cells.gradient = fields.gradient;
+    cells.discharge = -(fields.gradient.array().rowwise() * built->mobility.transpose().array());
+    if (options.forces) compute_forces(packing, velocities);
+    sum_faces();
+    solved_box = box;
+    solved = true;
+    time = at_time;
+    if (advance) ++steps_since_look;
+  }
+  wall_total += wall_seconds() - wall_start;
+  return forces;
+}
+
+void DarcyData::require_result() const {
+  if (!solved)
+    throw InputError("DarcyGrid holds no result: call step() or evaluate() first (the last call "
+                     "failed, or there was none)");
+}
+
+bool DarcyData::needs_look(const Packing& packing) const {
+  if (stale || !built || steps_since_look >= grid_options.refresh_every) return true;
+  if (packing.size() != static_cast<Eigen::Index>(packing_ids.size()) ||
+      !std::equal(packing_ids.begin(), packing_ids.end(), packing.ids.data()))
+    return true;
+  const std::vector<int>& columns = built->grains.columns;
+  std::size_t next = 0;
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    const bool active = next < columns.size() && columns[next] == k;
+    if (is_inside(packing, k, box) != active) return true;
+    next += active;
+    // a number that is not finite leads to a look, whose checks name it
+    if (packing.velocities.cols() > 0 && !packing.velocities.col(k).allFinite()) return true;
+  }
+  return false;
+}
+
+/// Porosity, permeability and the factor from the grains as they are now.
+void DarcyData::look(const Packing& packing) {
+  check(box);
+  auto fresh = std::make_unique<BuiltGrid>();
+  {
+    const PhaseClock clock(seconds.triangulate);
+    fresh->grains = select_grains(packing, box, options.outside);
+    fresh->lower = box.lower;
+    fresh->grid = make_grid(box, grid_options.cells);
+    fresh->faces = boundary_faces(fresh->grid, box);
+    fresh->overlaps = solid_overlaps(fresh->grains.spheres, fresh->grid);
+    ++counts.triangulate;
+  }
+  fresh->porosity = 1.0 - fresh->overlaps.solid.array() / fresh->grid.volume();
+  const Spheres& spheres = fresh->grains.spheres;
+  if (spheres.size() == 0)
+    throw InputError("darcy_grid: there is no grain in the flow box, so that nothing tells the "
+                     "permeability; put grains into it");
+  const double diameter = 2.0 * spheres.radii.mean();
+  fresh->permeability = fresh->porosity.unaryExpr(
+      [&](double porosity) { return kozeny_carman(porosity, diameter); });
+  fresh->mobility = fresh->permeability / fluid.viscosity;
+  if (built) ++looks;
+  built = std::move(fresh);
+  packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
+  cells.porosity = built->porosity;
+  cells.permeability = built->permeability;
+  factor();
+  stale = false;
+  steps_since_look = 0;
+}
+
+void DarcyData::factor() {
+  right_side.resize(0);
+  built->determined = has_pressure(built->faces, box);
+  {
+    const PhaseClock clock(seconds.assemble);
+    built->matrix = assemble(built->grid, built->faces, box, built->mobility);
+  }
+  if (!built->determined) return;
+  if (!solver) {
+    const PhaseClock clock(seconds.order);
+    solver = make_solver(options.solver, options.ordering);
+    solver->order(built->matrix, cell_centres(built->grid));
+    ++counts.order;
+  }
+  const PhaseClock clock(seconds.factor);
+  solver->factor(built->matrix);
+  ++counts.factor;
+}
+
+void DarcyData::update_rates() {
+  const PhaseClock clock(seconds.assemble);
+  rates = Eigen::VectorXd::Zero(built->grid.size());
+  if (!moving) return;
+  rates = volume_rates(built->grid, built->faces, box, built->overlaps, cells.carried);
+  ++counts.volume_rate;
+}
+
+void DarcyData::refuse_undetermined() const {
+  if (built->determined) return;
+  bool flux = false;
+  for (const GridFace& face : built->faces) {
+    const Boundary& boundary = boundary_of(box, face.boundary);
+    flux = flux || (boundary.kind == Boundary::Kind::flux && boundary.value != 0.0);
+  }
+  if (moving || flux)
+    throw InputError(std::string("darcy_grid: ") +
+                     (flux ? "a flux is imposed" : "the grains or faces move") +
+                     " and no face or patch has a pressure: nothing determines the pressure; give a "
+                     "pressure to a face");
+}
+
+/// Solves anew only where rates or boundary values have changed.
+void DarcyData::solve_pressures(double at_time) {
+  const PhaseClock clock(seconds.solve);
+  const BuiltGrid& b = *built;
+  reference = reference_pressure(b.grid, b.faces, box, at_time);
+  const GridDrive drive = drive_of(b.grid, b.faces, box, at_time, reference);
+  const Eigen::VectorXd right =
+      right_hand_side(b.grid, b.faces, box, b.mobility, drive, -rates);
+  if (!b.determined) {
+    solution = Eigen::VectorXd::Zero(b.grid.size());
+    right_side = right;
+  } else if (right_side.size() == 0 || right != right_side) {
+    right_side = right;
+    solver->solve(right_side, solution);
+    ++counts.solve;
+  }
+  fields = fields_of(b.grid, b.faces, box, b.mobility, drive, solution);
+  pressures = solution.array() + reference;
+}
+
+void DarcyData::compute_forces(const Packing& packing, const Eigen::Matrix3Xd& velocities) {
+  const PhaseClock clock(seconds.forces);
+  const BuiltGrid& b = *built;
+  const Spheres& spheres = b.grains.spheres;
+  coefficients =
+      drag_coefficients(b.overlaps, spheres, fluid, grid_options.drag, cells, velocities);
+  GrainForces grain = grain_forces(b.overlaps, coefficients, cells, velocities);
+  grain_sum = grain.pressure.rowwise().sum() + grain.drag.rowwise().sum();
+  if (options.buoyancy && !fluid.gravity.isZero(0.0))
+    for (int i = 0; i < spheres.size(); ++i)
+      grain.pressure.col(i) -=
+          4.0 / 3.0 * pi * std::pow(spheres.radii[i], 3) * fluid.density * fluid.gravity;
+  const Eigen::Index n = packing.size();
+  forces.total = spread(grain.pressure + grain.drag, b.grains.columns, n);
+  if (options.split_forces) {
+    forces.pressure = spread(grain.pressure, b.grains.columns, n);
+    forces.viscous = spread(grain.drag, b.grains.columns, n);
+  }
+  if (!options.sphere_pressure) return;
+  forces.sphere_pressure = Eigen::VectorXd::Zero(n);
+  for (int s = 0; s < b.overlaps.spheres(); ++s) {
+    double sum = 0.0, volume = 0.0;
+    for (int i = b.overlaps.begin[s]; i < b.overlaps.begin[s + 1]; ++i) {
+      sum += b.overlaps.volume[i] * pressures[b.overlaps.cell[i]];
+      volume += b.overlaps.volume[i];
+    }
+    if (volume > 0.0) forces.sphere_pressure[b.grains.columns[s]] = sum / volume;
+  }
+}
+
+void DarcyData::sum_faces() {
+  faces = {};
+  const BuiltGrid& b = *built;
+  for (std::size_t f = 0; f < b.faces.size(); ++f) {
+    const auto i = static_cast<Eigen::Index>(f);
+    const Face face = b.faces[f].face;
+    FaceResult& result = faces[static_cast<int>(face)];
+    result.flux += fields.face_inflow[i];
+    result.force_pressure += (fields.face_pressure[i] + reference) *
+                             b.grid.face_area(axis_of(face)) * outward_normal(face);
+  }
+}
+
+/// The drag of the last call as an operator on small changes of the velocities of grains and faces.
+double DarcyData::time_step_limit(const Eigen::VectorXd& masses,
+                                  const std::array<Piston, 6>& pistons) {
+  if (masses.size() != static_cast<Eigen::Index>(packing_ids.size()))
+    throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
+                     std::to_string(packing_ids.size()) + " spheres; give one a sphere");
+  if (!(masses.array() > 0.0).all())
+    throw InputError("time step limit: a mass is not a positive number; give kg");
+  if (!options.forces) throw InputError("time step limit: switch Options::forces on");
+  const BuiltGrid& b = *built;
+  const int spheres = b.grains.spheres.size();
+  const auto count = static_cast<Eigen::Index>(b.faces.size());
+  const GridDrive none{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
+  CellState change = cells;
+  Box moved = box;
+  const auto drag = [&](const Eigen::VectorXd& v) {
+    const Eigen::Matrix3Xd velocities = v.head(3 * spheres).reshaped(3, spheres);
+    for (int f = 0; f < 6; ++f) moved.faces[f].velocity = v[3 * spheres + f];
+    Eigen::VectorXd response = Eigen::VectorXd::Zero(b.grid.size());
+    change.carried.setZero();
+    if (grid_options.grain_motion && b.determined) {
+      change.carried = grain_velocities(b.overlaps, velocities);
+      solver->solve(-volume_rates(b.grid, b.faces, moved, b.overlaps, change.carried), response);
+    }
+    const GridFields answer = fields_of(b.grid, b.faces, box, b.mobility, none, response);
+    change.gradient = answer.gradient;
+    change.discharge = -(change.gradient.array().rowwise() * b.mobility.transpose().array());
+    const GrainForces force = grain_forces(b.overlaps, coefficients, change, velocities);
+    Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(v.size());
+    for (int i = 0; i < spheres; ++i)
+      acceleration.segment<3>(3 * i) =
+          -(force.pressure.col(i) + force.drag.col(i)) / masses[b.grains.columns[i]];
+    for (Eigen::Index f = 0; f < count; ++f) {
+      const Face face = b.faces[f].face;
+      acceleration[3 * spheres + static_cast<int>(face)] -=
+          (is_upper(face) ? 1.0 : -1.0) * answer.face_pressure[f] *
+          b.grid.face_area(axis_of(face)) / pistons[static_cast<int>(face)].mass;
+    }
+    return acceleration;
+  };
+  const double eigenvalue = largest_eigenvalue(drag, 3 * spheres + 6);
+  return eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace pfv

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "coupling/grains.hpp"
+#include "darcy_grid/grain_drag.hpp"
+#include "darcy_grid/grid_flow.hpp"
+#include "pfv/darcy_grid.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace pfv {
+
+/// What follows from one look at the porosity.
+struct BuiltGrid {
+  ActiveGrains grains;
+  Eigen::Vector3d lower;  ///< corner of the box, m
+  Grid grid;
+  std::vector<GridFace> faces;  ///< on the box
+  SolidOverlaps overlaps;
+  Eigen::VectorXd porosity, permeability, mobility;
+  SymmetricMatrix matrix;
+  bool determined = false;  ///< some face has a pressure; else the pressure is 0 everywhere
+};
+
+/// The state behind DarcyGrid.
+struct DarcyData {
+  Box box;
+  Fluid fluid;
+  DarcyOptions grid_options;
+  Options options;
+
+  std::unique_ptr<BuiltGrid> built;
+  std::unique_ptr<LinearSolver> solver;  ///< its ordering serves every look at the porosity
+  bool stale = true;
+  int steps_since_look = 0;
+  double time = 0.0;
+  std::int64_t looks = 0;  ///< after the first
+  Counts counts;
+  Seconds seconds;
+  double wall_total = 0.0;
+
+  // of the last call
+  bool solved = false;
+  Box solved_box;                   ///< as it was then
+  bool moving = false;
+  double reference = 0.0;           ///< pressure that was subtracted before solving, Pa
+  Eigen::VectorXd rates;            ///< m³/s, that moving grains push out of each cell
+  Eigen::VectorXd right_side;       ///< m³/s
+  Eigen::VectorXd solution;         ///< Pa, relative to the reference
+  GridFields fields;                ///< pressures relative to the reference
+  CellState cells;
+  Eigen::VectorXd coefficients;     ///< of the drag, one a part of the overlaps
+  Eigen::VectorXd pressures;        ///< Pa
+  Eigen::Vector3d grain_sum = Eigen::Vector3d::Zero();  ///< N, of the flow on all grains
+  Forces forces;
+  std::array<FaceResult, 6> faces;
+  std::vector<std::int64_t> packing_ids;
+
+  const Forces& compute(const Packing& packing, double at_time, bool advance);
+  double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
+  void require_result() const;
+
+ private:
+  bool needs_look(const Packing& packing) const;
+  void look(const Packing& packing);
+  void factor();
+  void update_rates();
+  void refuse_undetermined() const;
+  void solve_pressures(double at_time);
+  void compute_forces(const Packing& packing, const Eigen::Matrix3Xd& velocities);
+  void sum_faces();
+};
+
+/// Balances, counts and times, from the last call.
+Report make_report(const DarcyData& flow);
+
+}  // namespace pfv

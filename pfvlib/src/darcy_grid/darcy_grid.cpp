@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pfv/darcy_grid.hpp"
+
+#include "darcy_grid/darcy_data.hpp"
+#include "io/number_text.hpp"
+#include "pfv/error.hpp"
+#include "pfv/flow.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace pfv {
+
+namespace {
+
+/// The grid has no place for it; a setting that does nothing would mislead.
+void refuse_if(bool given, const char* what) {
+  if (given)
+    throw InputError(std::string("darcy_grid takes no ") + what +
+                     ": leave it away, or use the model pfv");
+}
+
+void refuse_periodic(const Box& box) { refuse_if(box.any_periodic(), "periodic axes"); }
+
+bool same_boundaries(const Box& a, const Box& b) {
+  if (a.patches.size() != b.patches.size()) return false;
+  for (std::size_t i = 0; i < a.patches.size(); ++i)
+    if (a.patches[i].face != b.patches[i].face ||
+        a.patches[i].rectangle != b.patches[i].rectangle ||
+        a.patches[i].boundary.kind != b.patches[i].boundary.kind)
+      return false;
+  for (int f = 0; f < 6; ++f)
+    if (a.faces[f].boundary.kind != b.faces[f].boundary.kind) return false;
+  return true;
+}
+
+[[noreturn]] void refuse_stages() {
+  throw InputError("darcy_grid has no staged step: take a smaller time step, or the model pfv");
+}
+
+}  // namespace
+
+const char* name_of(DragLaw law) {
+  return law == DragLaw::kozeny_carman ? "kozeny_carman" : "di_felice";
+}
+
+DragLaw drag_law_named(const std::string& name) {
+  for (const DragLaw law : {DragLaw::di_felice, DragLaw::kozeny_carman})
+    if (name == name_of(law)) return law;
+  throw InputError("unknown drag law '" + name + "': use one of di_felice, kozeny_carman");
+}
+
+void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options) {
+  double cells = 1.0;
+  for (const int count : grid.cells) {
+    if (count < 1)
+      throw InputError("darcy_grid: " + std::to_string(count) +
+                       " cells along an axis: give a whole number >= 1");
+    cells *= count;
+  }
+  if (cells > std::numeric_limits<int>::max() / 8)
+    throw InputError("darcy_grid: " + detail::number_text(cells) +
+                     " cells are too many: give fewer");
+  if (grid.refresh_every < 1)
+    throw InputError("darcy_grid: the porosity is looked at every " +
+                     std::to_string(grid.refresh_every) + " steps: give a whole number >= 1");
+  const Options defaults;
+  refuse_if(fluid.bulk_modulus.has_value(), "bulk modulus");
+  refuse_if(options.conductance != defaults.conductance, "conductance law");
+  refuse_if(options.partition != defaults.partition, "partition of throats");
+  refuse_if(options.retriangulation_strain != defaults.retriangulation_strain,
+            "retriangulation strain");
+}
+
+std::unique_ptr<FlowModel> make_flow(const Box& box, const Fluid& fluid, const Options& options,
+                                     const std::optional<DarcyOptions>& grid) {
+  if (grid) return std::make_unique<DarcyGrid>(box, fluid, *grid, options);
+  return std::make_unique<Flow>(box, fluid, options);
+}
+
+DarcyGrid::DarcyGrid(Box box, Fluid fluid, DarcyOptions grid, Options options)
+    : data_(std::make_unique<DarcyData>()) {
+  check(box);
+  check(fluid);
+  check(options);
+  check(grid, fluid, options);
+  refuse_periodic(box);
+  data_->box = std::move(box);
+  data_->fluid = fluid;
+  data_->grid_options = grid;
+  data_->options = options;
+}
+
+DarcyGrid::~DarcyGrid() = default;
+DarcyGrid::DarcyGrid(DarcyGrid&&) noexcept = default;
+DarcyGrid& DarcyGrid::operator=(DarcyGrid&&) noexcept = default;
+
+const Forces& DarcyGrid::step(const Packing& packing, double dt) {
+  if (!(dt > 0.0) || !std::isfinite(dt))
+    throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
+  return data_->compute(packing, data_->time + dt, true);
+}
+
+const Forces& DarcyGrid::evaluate(const Packing& packing, double) {
+  return data_->compute(packing, data_->time, false);
+}
+
+const Forces& DarcyGrid::step_staged(const Packing&, double, const GrainDynamics&) {
+  refuse_stages();
+}
+
+const Forces& DarcyGrid::evaluate_staged(const Packing&, double, const GrainDynamics&) {
+  refuse_stages();
+}
+
+void DarcyGrid::rebuild() { data_->stale = true; }
+
+void DarcyGrid::set_box(const Box& box) {
+  check(box);
+  refuse_periodic(box);
+  if (!same_boundaries(data_->box, box)) data_->stale = true;
+  data_->box = box;
+}
+
+const Box& DarcyGrid::box() const { return data_->box; }
+const Fluid& DarcyGrid::fluid() const { return data_->fluid; }
+const DarcyOptions& DarcyGrid::grid() const { return data_->grid_options; }
+double DarcyGrid::time() const { return data_->time; }
+
+FlowState DarcyGrid::state() const { return {data_->time, 0.0, data_->looks, {}}; }
+
+void DarcyGrid::set_state(FlowState state) {
+  data_->time = state.time;
+  data_->looks = state.retriangulations;
+}
+
+const Forces& DarcyGrid::forces() const {
+  data_->require_result();
+  return data_->forces;
+}
+
+const std::array<FaceResult, 6>& DarcyGrid::faces() const {
+  data_->require_result();
+  return data_->faces;
+}
+
+std::array<Eigen::Vector3d, 6> DarcyGrid::face_forces() const {
+  std::array<Eigen::Vector3d, 6> forces;
+  for (int f = 0; f < 6; ++f) forces[f] = faces()[f].force_pressure;
+  return forces;
+}
+
+double DarcyGrid::pressure_at(const Eigen::Vector3d& place) const {
+  data_->require_result();
+  const Grid& grid = data_->built->grid;
+  const Eigen::Vector3d relative = place - data_->built->lower;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(relative[axis] >= 0.0 && relative[axis] <= grid.counts[axis] * grid.lengths[axis]))
+      throw InputError("no pressure at a place outside the box");
+  const int cell = grid.cell_at(relative);
+  return data_->pressures[cell] +
+         data_->fields.gradient.col(cell).dot(relative - grid.centre(cell));
+}
+
+double DarcyGrid::plane_pressure(int axis, double position) const {
+  data_->require_result();
+  const Grid& grid = data_->built->grid;
+  const double relative = position - data_->built->lower[axis];
+  if (!(relative >= 0.0 && relative <= grid.counts[axis] * grid.lengths[axis]))
+    throw InputError("the plane at " + std::to_string(position) + " m cuts no cell");
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  place[axis] = relative;
+  const int layer = grid.place(grid.cell_at(place))[axis];
+  double sum = 0.0;
+  int count = 0;
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    if (grid.place(cell)[axis] != layer) continue;
+    sum += data_->pressures[cell] +
+           data_->fields.gradient(axis, cell) * (relative - grid.centre(cell)[axis]);
+    ++count;
+  }
+  return sum / count;
+}
+
+double DarcyGrid::mean_pressure() const {
+  data_->require_result();
+  const Eigen::VectorXd fluid = data_->built->porosity.cwiseMax(0.0);
+  return fluid.sum() > 0.0 ? fluid.dot(data_->pressures) / fluid.sum() : 0.0;
+}
+
+double DarcyGrid::time_step_limit(const Eigen::VectorXd& masses,
+                                  const std::array<Piston, 6>& pistons) {
+  data_->require_result();
+  return data_->time_step_limit(masses, pistons);
+}
+
+std::int64_t DarcyGrid::retriangulations() const { return data_->looks; }
+
+std::int64_t DarcyGrid::hidden_or_outside() const {
+  data_->require_result();
+  return static_cast<std::int64_t>(data_->packing_ids.size()) -
+         data_->built->grains.spheres.size();
+}
+
+const Eigen::VectorXd& DarcyGrid::cell_pressures() const {
+  data_->require_result();
+  return data_->pressures;
+}
+
+const Eigen::VectorXd& DarcyGrid::cell_porosities() const {
+  data_->require_result();
+  return data_->built->porosity;
+}
+
+const Eigen::VectorXd& DarcyGrid::cell_permeabilities() const {
+  data_->require_result();
+  return data_->built->permeability;
+}
+
+Eigen::Matrix3Xd DarcyGrid::cell_velocities() const {
+  data_->require_result();
+  return data_->cells.discharge;
+}
+
+Eigen::Vector3d DarcyGrid::cell_lengths() const {
+  data_->require_result();
+  return data_->built->grid.lengths;
+}
+
+Eigen::Vector3d DarcyGrid::lower_corner() const {
+  data_->require_result();
+  return data_->built->lower;
+}
+
+Report DarcyGrid::report() const {
+  data_->require_result();
+  return make_report(*data_);
+}
+
+}  // namespace pfv
