@@ -40,7 +40,8 @@ const Forces& DarcyData::compute(const Packing& packing, double at_time, bool ad
     const PhaseClock clock(seconds.total);
     solved = false;
     if (needs_look(packing)) look(packing);
-    const Eigen::Matrix3Xd velocities = active_velocities(packing, built->grains.columns);
+    Eigen::Matrix3Xd velocities;
+    gather_velocities(packing, built->grains.columns, velocities);
     moving = grid_options.grain_motion && !at_rest(packing, box);
     cells.carried = moving ? grain_velocities(built->overlaps, velocities)
                            : Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, built->grid.size()));
