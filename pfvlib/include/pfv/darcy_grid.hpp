@@ -44,7 +44,7 @@ struct DarcyData;
 /// between a call costs one pass over the grains and, where rates or boundary values have changed, one
 /// solve. A call after `rebuild` does not count as a step.
 ///
-/// Of `Options` it takes solver, ordering, outside, forces, split_forces (the viscous part is the drag),
+/// Of `Options` it takes solver, ordering, precision, threads, outside, forces, split_forces (the viscous part is the drag),
 /// buoyancy and sphere_pressure; periodic axes are refused.
 class DarcyGrid final : public FlowModel {
  public:

@@ -4,6 +4,7 @@
 #include "coupling/phase_clock.hpp"
 #include "darcy_grid/kozeny_carman.hpp"
 #include "network/pore_boundaries.hpp"
+#include "parallel/team.hpp"
 #include "pfv/error.hpp"
 #include "physics/time_step_limit.hpp"
 
@@ -126,7 +127,8 @@ void DarcyData::factor() {
   if (!built->determined) return;
   if (!solver) {
     const PhaseClock clock(seconds.order);
-    solver = make_solver(options.solver, options.ordering);
+    solver = make_solver(options.solver, options.ordering, options.precision,
+                         std::make_shared<Team>(options.threads));
     solver->order(built->matrix, cell_centres(built->grid));
     ++counts.order;
   }

@@ -66,6 +66,7 @@ Report make_report(const DarcyData& flow) {
   if (flow.solver) report.solver = flow.solver->name();
   report.ordering = name_of(resolved(flow.options.solver, flow.options.ordering));
   report.conductance = "kozeny_carman";
+  report.threads = flow.options.threads;
   report.faces = flow.faces;
   report.counts = flow.counts;
   report.seconds = flow.seconds;
