@@ -2,7 +2,6 @@
 // Threads and the precision of the factor: what they may change, and what not.
 #include "pfv/pfv.hpp"
 #include "solve/linear_solver.hpp"
-#include "support/dense_packing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +15,7 @@ using namespace pfv;
 /// Grains that sink between a fed and an open face, of enough pores that the elimination tree is cut.
 struct Scene {
   Box box;
-  PackingArrays packing = support::dense_packing(1500);
+  PackingArrays packing = dense_packing(1500);
 
   Scene() {
     box[Face::zlo].boundary = Boundary::flux(1e-3);
