@@ -201,8 +201,9 @@ def write_thresholds(rows):
     return "\n".join(lines)
 
 
-COUPLINGS = [("every step", []), ("every 2nd", ["COUPLE_EVERY=2"]),
-             ("every 4th", ["COUPLE_EVERY=4"]), ("every 8th", ["COUPLE_EVERY=8"])]
+COUPLINGS = [("every step", []), ("every 2nd", ["FIX=couple_every 2"]),
+             ("every 4th", ["FIX=couple_every 4"]), ("every 8th", ["FIX=couple_every 8"]),
+             ("mixed precision", ["FIX=precision mixed"])]
 
 
 def measure_coupling():

@@ -245,6 +245,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
     settings.options.conductance = pfv::conductance_law_named(words.word("the law's name"));
   else if (keyword == "solver")
     settings.options.solver = pfv::solver_named(words.word("the solver's name"));
+  else if (keyword == "tolerance")
+    settings.options.tolerance = words.number("the tolerance");
   else if (keyword == "precision")
     settings.options.precision = pfv::precision_named(words.word("the precision's name"));
   else if (keyword == "threads")
@@ -256,8 +258,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
     throw pfv::InputError("unknown keyword '" + keyword +
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
                           "pressure_profile, retriangulate, couple_every, coupling, "
-                          "time_step_check, conductance, solver, precision, threads, output, "
-                          "profile and sensors");
+                          "time_step_check, conductance, solver, tolerance, precision, threads, "
+                          "output, profile and sensors");
 }
 
 /// A profile makes its face one of imposed pressure, which a face with another boundary is not.

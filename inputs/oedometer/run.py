@@ -27,6 +27,7 @@ KEYS = {
     "END": (float, 2.6, "duration of the loading, T_v"),
     "RETRIANGULATE": (float, 0.01, "pore strain"),
     "FIELDS": (int, 0, "instants of the consolidation written for ParaView; 0: none"),
+    "FIX": (str, "couple_every 1", "more keywords of fix pfv, in quotes"),
     "OUT": (str, "post/sample", "where results go, without ending"),
     "KEEP": (int, 0, "1: take the sample, dry test and permeability that OUT holds"),
 }
@@ -149,7 +150,8 @@ def couple(settings, sample, planned):
                  ("viscosity", "time_step", "stride", "every", "rest_to", "steps")}
     variables["report"] = max(1, planned["steps"] // 100)
     variables.update(common_variables(settings), dF=settings["LOAD"] * SIDE**2,
-                     piston_mass=piston_mass(grains), retriangulate=settings["RETRIANGULATE"])
+                     piston_mass=piston_mass(grains), retriangulate=settings["RETRIANGULATE"],
+                     words=settings["FIX"])
     if settings["FIELDS"]:
         fields_every = max(1, planned["steps"] // settings["FIELDS"])
         variables["words"] = f"output {fields_every} {out}.pvd"

@@ -85,6 +85,7 @@ Options options_of(const SolveArguments& arguments) {
   options.solver = solver_named(arguments.solver);
   options.ordering = ordering_named(arguments.ordering);
   options.precision = precision_named(arguments.precision);
+  if (arguments.tolerance) options.tolerance = number("--tolerance", *arguments.tolerance);
   options.threads = threads_of(arguments);
   // Only what an output shows is computed: the report holds the sum of the forces.
   options.forces = arguments.forces || arguments.report;
@@ -234,6 +235,9 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
                      "fill-reducing ordering (default " + arguments.ordering +
                      ": geometric; for cholmod)")
       ->option_text("auto|geometric|metis|amd")->group(group);
+  command.add_option("--tolerance", arguments.tolerance,
+                     "residual over right-hand side where cg and gauss_seidel end (default 1e-10)")
+      ->option_text("T")->group(group);
   command.add_option("--precision", arguments.precision,
                      "how cholmod keeps its factor: mixed has half as much to read a step and\n"
                      "solves to a residual of 1e-9 (default " + arguments.precision + ")")

@@ -22,6 +22,7 @@ struct SolveArguments {
   std::vector<std::string> cells;
   std::string wall = "no_slip", viscosity = "1e-3", density = "1000", conductance, partition, solver,
       ordering, precision, threads = "1";
+  std::optional<std::string> tolerance;
   std::optional<std::string> bulk_modulus, time_step, repeat;
   std::optional<std::string> forces, report, vtk;
 };

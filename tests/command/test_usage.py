@@ -6,7 +6,7 @@ import unittest
 from command import DENSE, UNIT_BOX, CommandTest
 
 OPTIONS = ("packing box face patch wall viscosity density gravity bulk-modulus time-step "
-           "conductance solver ordering precision threads repeat forces report vtk").split()
+           "conductance solver ordering tolerance precision threads repeat forces report vtk").split()
 
 
 class Usage(CommandTest):

@@ -548,6 +548,23 @@ INSTANTIATE_TEST_SUITE_P(Solvers, IterativeSolver,
                          testing::Values(SolverKind::cg, SolverKind::gauss_seidel),
                          [](const auto& info) { return std::string(name_of(info.param)); });
 
+TEST_P(IterativeSolver, EndsWhereTheToleranceSays) {
+  const SymmetricMatrix matrix = lattice(8, 0.1);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(matrix.size(), -1.0, 2.0);
+  double last = 1.0;
+  for (const double tolerance : {1e-2, 1e-5, 1e-9}) {
+    Options options;
+    options.solver = GetParam();
+    options.tolerance = tolerance;
+    const auto solver = make_solver(options);
+    const double residual = (b - multiply(matrix, solution(*solver, matrix, b))).norm() / b.norm();
+    EXPECT_LE(residual, tolerance);
+    EXPECT_LT(residual, last);
+    last = residual;
+  }
+  EXPECT_GT(last, 1e-14);  // no further than asked for
+}
+
 // The sum of the sources has nowhere to go.
 TEST_P(IterativeSolver, SaysThatItFoundNoSolution) {
   const SymmetricMatrix matrix = lattice(4, 0.0);

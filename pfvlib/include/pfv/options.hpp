@@ -33,12 +33,17 @@ enum class Partition { signed_angles, yade };
 /// What to do with a grain whose centre is not inside the flow box.
 enum class OutsideGrains { refuse, leave_out };
 
+constexpr double default_tolerance = 1e-10;
+
 struct Options {
   ConductanceLaw conductance = ConductanceLaw::hydraulic_radius;
   Partition partition = Partition::signed_angles;
   SolverKind solver = SolverKind::automatic;
   OrderingKind ordering = OrderingKind::automatic;
   Precision precision = Precision::full;
+  /// Where cg and gauss_seidel end: residual over right-hand side (2-norms), in (0, 1). Direct solvers
+  /// have none and refuse another than this.
+  double tolerance = default_tolerance;
   /// Threads that share a step, 1 ... 64. They change no byte of any result.
   int threads = 1;
   OutsideGrains outside = OutsideGrains::refuse;

@@ -165,7 +165,7 @@ void FlowData::assemble_and_factor(double step) {
       counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
   }
   if (new_pattern) {
-    built->solver = make_solver(options.solver, options.ordering, options.precision, team);
+    built->solver = make_solver(options, team);
     solution.setZero(built->unknowns.count);  // no trace of the old network in what follows
   }
   if (built->unknowns.count > 0) {

@@ -108,8 +108,7 @@ void FlowData::factor_implicit(const Eigen::RowVectorXd& per_mass) {
   }
   const bool new_pattern = !implicit.solver || implicit.system.matrix.column != old_pattern;
   if (!implicit.solver)
-    implicit.solver =
-        make_solver(options.solver, options.ordering, options.precision, team);
+    implicit.solver = make_solver(options, team);
   if (built->unknowns.count > 0) {
     if (new_pattern) {
       const PhaseClock clock(seconds.order);

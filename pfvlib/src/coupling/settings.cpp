@@ -208,6 +208,12 @@ void check(const Options& options) {
     throw InputError("retriangulation strain is " + number_text(options.retriangulation_strain) +
                      ": give a number > 0");
   check(options.solver, options.ordering);
+  if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
+    throw InputError("tolerance is " + number_text(options.tolerance) +
+                     ": give a number above 0 and below 1");
+  if (options.tolerance != default_tolerance && !is_iterative(options.solver))
+    throw InputError(std::string("the solver ") + name_of(resolved(options.solver)) +
+                     " is direct and takes no tolerance; use the solver cg or gauss_seidel");
   name_of(options.precision);
   if (options.precision == Precision::mixed && resolved(options.solver) != SolverKind::cholmod)
     throw InputError(std::string("the solver ") + name_of(options.solver) +

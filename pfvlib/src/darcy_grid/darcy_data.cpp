@@ -127,8 +127,7 @@ void DarcyData::factor() {
   if (!built->determined) return;
   if (!solver) {
     const PhaseClock clock(seconds.order);
-    solver = make_solver(options.solver, options.ordering, options.precision,
-                         std::make_shared<Team>(options.threads));
+    solver = make_solver(options, std::make_shared<Team>(options.threads));
     solver->order(built->matrix, cell_centres(built->grid));
     ++counts.order;
   }

@@ -9,7 +9,6 @@
 namespace pfv {
 namespace {
 
-constexpr double tolerance = 1e-10;
 constexpr int most_iterations = 20000;
 constexpr int most_sweeps = 200000;
 constexpr int sweeps_between_checks = 10;
@@ -77,7 +76,7 @@ bool IterativeSolver::is_solved(const Eigen::VectorXd& b, const Eigen::VectorXd&
     rounding += magnitude * magnitude;
   }
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  return r.norm() <= std::max(tolerance * b.norm(), epsilon * std::sqrt(rounding));
+  return r.norm() <= std::max(tolerance_ * b.norm(), epsilon * std::sqrt(rounding));
 }
 
 // Row i of L: L_ij = A_ij - sum_k<j L_ik L_jk / D_k, D_i = L_ii, where A has an entry.
@@ -133,7 +132,7 @@ void ConjugateGradient::iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     precondition(r, z);
     direction = z;
     double rz = r.dot(z);
-    const double aim = std::max(1e-12 * b.norm(), 1e-3 * r.norm());
+    const double aim = std::max(1e-2 * tolerance_ * b.norm(), 1e-3 * r.norm());
     for (; iterations < most_iterations && r.norm() > aim; ++iterations) {
       product = multiply(matrix_, direction);
       const double step = rz / direction.dot(product);

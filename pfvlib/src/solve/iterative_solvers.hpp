@@ -8,11 +8,12 @@
 namespace pfv {
 
 /// What the iterative solvers share. They start from x = 0, so that one b gives one x, and end
-/// where the residual is below 1e-10 of b or is rounding error of A x; SolverError where that is
-/// not reached.
+/// where the residual is below `tolerance` of b or is rounding error of A x; SolverError where that
+/// is not reached.
 class IterativeSolver : public CheckedSolver {
  public:
-  using CheckedSolver::CheckedSolver;
+  IterativeSolver(SolverKind kind, double tolerance)
+      : CheckedSolver(kind), tolerance_(tolerance) {}
 
  protected:
   virtual void iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;  ///< from x = 0
@@ -27,6 +28,7 @@ class IterativeSolver : public CheckedSolver {
   [[noreturn]] void fail_after(int iterations, const Eigen::VectorXd& b,
                                const Eigen::VectorXd& r) const;
 
+  double tolerance_;
   SymmetricMatrix matrix_;
   std::vector<int> diagonal_;  ///< where each row's diagonal entry is
 };
@@ -35,7 +37,7 @@ class IterativeSolver : public CheckedSolver {
 /// (Meijerink and van der Vorst 1977: it exists, as no conductance is negative).
 class ConjugateGradient final : public IterativeSolver {
  public:
-  ConjugateGradient() : IterativeSolver(SolverKind::cg) {}
+  explicit ConjugateGradient(double tolerance) : IterativeSolver(SolverKind::cg, tolerance) {}
 
  private:
   void factor_values(const SymmetricMatrix& matrix) override;
@@ -50,7 +52,8 @@ class ConjugateGradient final : public IterativeSolver {
 /// 2012), for comparison.
 class GaussSeidel final : public IterativeSolver {
  public:
-  GaussSeidel() : IterativeSolver(SolverKind::gauss_seidel) {}
+  explicit GaussSeidel(double tolerance)
+      : IterativeSolver(SolverKind::gauss_seidel, tolerance) {}
 
  private:
   void factor_values(const SymmetricMatrix& matrix) override { keep_values(matrix); }

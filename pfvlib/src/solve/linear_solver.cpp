@@ -46,16 +46,27 @@ void check(SolverKind solver, OrderingKind ordering) {
                    ", or the solver cholmod");
 }
 
-std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering,
-                                          Precision precision, std::shared_ptr<Team> team) {
-  check(solver, ordering);
-  switch (resolved(solver)) {
-    case SolverKind::cg: return std::make_unique<ConjugateGradient>();
-    case SolverKind::gauss_seidel: return std::make_unique<GaussSeidel>();
+bool is_iterative(SolverKind solver) {
+  return solver == SolverKind::cg || solver == SolverKind::gauss_seidel;
+}
+
+std::unique_ptr<LinearSolver> make_solver(const Options& options, std::shared_ptr<Team> team) {
+  check(options.solver, options.ordering);
+  const SolverKind kind = resolved(options.solver);
+  switch (kind) {
+    case SolverKind::cg: return std::make_unique<ConjugateGradient>(options.tolerance);
+    case SolverKind::gauss_seidel: return std::make_unique<GaussSeidel>(options.tolerance);
     default:
       if (!team) team = std::make_shared<Team>();
-      return make_amesos2_solver(resolved(solver), ordering, precision, std::move(team));
+      return make_amesos2_solver(kind, options.ordering, options.precision, std::move(team));
   }
+}
+
+std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering) {
+  Options options;
+  options.solver = solver;
+  options.ordering = ordering;
+  return make_solver(options);
 }
 
 }  // namespace pfv

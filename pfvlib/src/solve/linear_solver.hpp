@@ -42,12 +42,15 @@ class LinearSolver {
   virtual std::string name() const = 0;
 };
 
-/// The solver for a choice of the user (automatic choices are resolved). Throws InputError for a
-/// combination that makes no sense. `team` shares the solves of cholmod; null: the caller's thread does
-/// them.
-std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering,
-                                          Precision precision = Precision::full,
+/// The solver that the options name (automatic choices are resolved), with its ordering, precision and
+/// tolerance. Throws InputError for a combination that makes no sense. `team` shares the solves of
+/// cholmod; null: the caller's thread does them.
+std::unique_ptr<LinearSolver> make_solver(const Options& options,
                                           std::shared_ptr<Team> team = nullptr);
+/// The same with the other options as they are by default.
+std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering);
+
+bool is_iterative(SolverKind solver);
 
 /// Throws InputError for an ordering that the solver does not take.
 void check(SolverKind solver, OrderingKind ordering);
