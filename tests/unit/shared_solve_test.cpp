@@ -99,7 +99,10 @@ TEST(MixedPrecision, SaysWhereItDoesNotSuffice) {
   const SymmetricMatrix matrix = cluster(50, 1e-8);
   const Eigen::VectorXd b = Eigen::VectorXd::Unit(50, 49);
   const auto exact = make_solver(SolverKind::cholmod, OrderingKind::amd);
-  const auto mixed = make_solver(SolverKind::cholmod, OrderingKind::amd, Precision::mixed);
+  Options in_single_precision;
+  in_single_precision.ordering = OrderingKind::amd;
+  in_single_precision.precision = Precision::mixed;
+  const auto mixed = make_solver(in_single_precision);
   Eigen::VectorXd x(50), y = Eigen::VectorXd::Zero(50);
   exact->order(matrix);
   exact->factor(matrix);
