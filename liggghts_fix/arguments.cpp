@@ -82,8 +82,9 @@ class Words {
     const std::string text = word("the coupling");
     if (text == "explicit") return PfvCoupling::explicit_forces;
     if (text == "staged") return PfvCoupling::staged;
+    if (text == "implicit") return PfvCoupling::implicit;
     if (text == "auto") return PfvCoupling::automatic;
-    fail("there are explicit, staged and auto, not '" + text + "'");
+    fail("there are explicit, staged, implicit and auto, not '" + text + "'");
   }
 
   [[noreturn]] void fail(const std::string& what) const {

@@ -68,7 +68,8 @@ struct PfvFieldOutput {
 enum class PfvCoupling {
   explicit_forces,  ///< of the velocities at the beginning of the step
   staged,           ///< the drag is integrated over the step
-  automatic         ///< staged for a network whose explicit limit is below the step
+  implicit,         ///< of the velocities at the end of the step
+  automatic         ///< what is cheapest and stable, chosen for each network
 };
 
 struct PfvSettings {

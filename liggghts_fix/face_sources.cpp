@@ -1,21 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "face_sources.h"
 
+#include "private_member.h"
+
 #include "pfv/error.hpp"
 
 #include "fix_mesh_surface.h"
 #include "fix_wall_gran.h"
 #include "mesh_module_stress.h"
+#include "mesh_module_stress_servo.h"
 #include "modify.h"
 #include "primitive_wall.h"
 #include "tri_mesh.h"
 
 #include <mpi.h>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
 namespace LAMMPS_NS {
+
+using PfvAxis = double[3];
+PFV_PRIVATE_MEMBER(PfvServoAxis, PfvAxis, MeshModuleStressServo, axis_)
+PFV_PRIVATE_MEMBER(PfvServoLargest, double, MeshModuleStressServo, ctrl_op_max_)
+PFV_PRIVATE_MEMBER(PfvServoSetPoint, double, MeshModuleStressServo, sp_mag_)
+PFV_PRIVATE_MEMBER(PfvServoKp, double, MeshModuleStressServo, kp_)
+PFV_PRIVATE_MEMBER(PfvServoKi, double, MeshModuleStressServo, ki_)
+PFV_PRIVATE_MEMBER(PfvServoKd, double, MeshModuleStressServo, kd_)
+PFV_PRIVATE_MEMBER(PfvServoIntegrates, bool, MeshModuleStressServo, int_flag_)
+PFV_PRIVATE_MEMBER(PfvServoAutomatic, bool, MeshModuleStressServo, mode_flag_)
+PFV_PRIVATE_MEMBER(PfvServoStyle, int, MeshModuleStressServo, ctrl_style_)
 
 namespace {
 
@@ -52,6 +67,26 @@ Plane plane_of(PrimitiveWall* wall) {
   for (int axis = 0; axis < 3; ++axis)
     if (to_wall_a[axis] != to_wall_b[axis]) return {axis, to_wall_a[axis]};
   return {-1, 0.0};
+}
+
+MeshModuleStress* stress_of(FixMeshSurface* mesh) {
+  return mesh ? dynamic_cast<MeshModuleStress*>(mesh->get_module("stress")) : nullptr;
+}
+
+/// The servo that makes the mesh a piston along the axis, or null.
+const MeshModuleStressServo* piston_servo(FixMeshSurface* mesh, int axis) {
+  constexpr int of_a_force = 3;  // LIGGGHTS' own number, private to its source
+  auto* servo = mesh ? dynamic_cast<MeshModuleStressServo*>(mesh->get_module("servo")) : nullptr;
+  if (!servo || !stress_of(mesh)) return nullptr;
+  const double along = (servo->*member(PfvServoAxis()))[axis];
+  const bool integral_alone = servo->*member(PfvServoKp()) == 0.0 &&
+                              servo->*member(PfvServoKd()) == 0.0 &&
+                              servo->*member(PfvServoKi()) > 0.0;
+  return servo->*member(PfvServoIntegrates()) && !(servo->*member(PfvServoAutomatic())) &&
+                 servo->*member(PfvServoStyle()) == of_a_force && integral_alone &&
+                 servo->*member(PfvServoSetPoint()) != 0.0 && std::abs(std::abs(along) - 1.0) < 1e-9
+             ? servo
+             : nullptr;
 }
 
 }  // namespace
@@ -143,10 +178,37 @@ void PfvFaceSources::follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& cen
   }
 }
 
+void PfvFaceSources::begin_forces() {
+  for (int number = 0; number < 6; ++number)
+    if (MeshModuleStress* stress = stress_of(meshes_[number]))
+      begun_[number] = stress->f_total(number / 2);
+}
+
+std::array<pfv::Piston, 6> PfvFaceSources::pistons(bool forces) const {
+  std::array<pfv::Piston, 6> pistons{};
+  std::array<double, 6> of_grains{};
+  bool any = false;
+  for (int number = 0; number < 6; ++number) {
+    const MeshModuleStressServo* servo = piston_servo(meshes_[number], number / 2);
+    if (!servo) continue;
+    any = true;
+    // LIGGGHTS keeps the target with the other sign, as the force of the grains that answers it
+    const double target = -(servo->*member(PfvServoSetPoint()));
+    pistons[number].mass = std::abs(target) / (servo->*member(PfvServoLargest()) *
+                                               servo->*member(PfvServoKi()));
+    pistons[number].other_force = target * (servo->*member(PfvServoAxis()))[number / 2];
+    of_grains[number] = stress_of(meshes_[number])->f_total(number / 2) - begun_[number];
+  }
+  if (!forces || !any) return pistons;
+  MPI_Allreduce(MPI_IN_PLACE, of_grains.data(), 6, MPI_DOUBLE, MPI_SUM, world);
+  for (int number = 0; number < 6; ++number) pistons[number].other_force += of_grains[number];
+  return pistons;
+}
+
 void PfvFaceSources::push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const {
   for (int number = 0; number < 6; ++number) {
     if (!meshes_[number]) continue;
-    auto* stress = dynamic_cast<MeshModuleStress*>(meshes_[number]->get_module("stress"));
+    MeshModuleStress* stress = stress_of(meshes_[number]);
     if (!stress) continue;
     Eigen::Vector3d force = forces[number];
     stress->add_global_external_contribution(force.data());

@@ -5,6 +5,8 @@
 
 #include "arguments.h"
 
+#include "pfv/flow_model.hpp"
+
 #include "pointers.h"
 
 #include <array>
@@ -32,6 +34,15 @@ class PfvFaceSources : protected Pointers {
   /// m/s along the face's axis; that of a mesh's nodes, 0 for everything else.
   const std::array<double, 6>& velocities() const { return velocities_; }
 
+  /// Remembers what the meshes' stress modules hold before the forces of a step are reckoned.
+  void begin_forces();
+
+  /// The faces that are pistons: meshes under a servo whose only gain is that of the integral and that
+  /// controls a force along the face's axis. LIGGGHTS moves them by m dv/dt = F + target with
+  /// m = target / (vel_max ki). With `forces`: also the force of the grains on them in this step and the
+  /// target; collective.
+  std::array<pfv::Piston, 6> pistons(bool forces) const;
+
   /// Adds a force (N) to what the meshes' stress modules record in this step, so that outputs and
   /// servos see it. Rank 0.
   void push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const;
@@ -43,6 +54,7 @@ class PfvFaceSources : protected Pointers {
 
   std::array<PfvFace, 6> faces_;
   std::array<class FixMeshSurface*, 6> meshes_{};
+  std::array<double, 6> begun_{};  ///< force along the face's axis that this rank's module held, N
   std::array<double, 6> positions_{};
   std::array<double, 6> velocities_{};
 };

@@ -42,7 +42,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   restart_global = 1;
 }
 
-int FixPfv::setmask() { return POST_FORCE | POST_RUN; }
+int FixPfv::setmask() { return PRE_FORCE | POST_FORCE | POST_RUN; }
 
 void FixPfv::post_create() {
   const std::string property_id = std::string(id) + "_prop";
@@ -187,8 +187,9 @@ pfv::Box FixPfv::current_box() {
 
 /// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
-  grains_.gather(groups_, may_stage());
+  grains_.gather(groups_, needs_forces());
   everywhere([&] { faces_.read(); });
+  pistons_ = faces_.pistons(needs_forces());
 }
 
 /// Completes the box on rank 0, where the grains are.
@@ -231,6 +232,10 @@ Eigen::Vector3d FixPfv::gravity() const {
   return sum;
 }
 
+void FixPfv::setup_pre_force(int vflag) { pre_force(vflag); }
+
+void FixPfv::pre_force(int) { faces_.begin_forces(); }
+
 /// The forces of the present state, without advancing the flow: a run begins.
 void FixPfv::setup(int) {
   settings_.fluid.gravity = gravity();
@@ -241,9 +246,7 @@ void FixPfv::setup(int) {
     place_faces(box_);
     prepare_flow(box_);
     flow_->evaluate(grains_.packing(), flow_step());
-    choose_coupling();
-    if (staged_)
-      flow_->evaluate_staged(grains_.packing(), flow_step(), grains_.dynamics());
+    evaluate_flow();
     if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
     check_time_step();
   });

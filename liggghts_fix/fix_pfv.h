@@ -37,6 +37,8 @@ class FixPfv : public Fix {
   void pre_delete(bool unfixflag) override;
   void init() override;
   void setup(int vflag) override;
+  void setup_pre_force(int vflag) override;
+  void pre_force(int vflag) override;
   void post_force(int vflag) override;
   void post_run() override;
 
@@ -77,10 +79,13 @@ class FixPfv : public Fix {
 
   // time step and coupling
   void bind_coupling();
-  bool may_stage() const;
+  bool needs_forces() const;
   double flow_step() const;  ///< s, between two flow steps of a run
   void choose_coupling();
+  pfv::GrainDynamics dynamics() const { return grains_.dynamics(pistons_); }
+  double time_step_limit();
   void step_flow();
+  void evaluate_flow();
   double estimated_limit() const;
   void check_time_step();
 
@@ -94,7 +99,8 @@ class FixPfv : public Fix {
   PfvFaceSources faces_;
   PfvGrainExchange grains_;
   PfvGroups groups_;
-  std::string obstacle_;  // to staged coupling
+  std::string obstacle_;  // to staged and implicit coupling
+  std::array<pfv::Piston, 6> pistons_{};
   class FixPropertyAtom* per_atom_ = nullptr;
   pfv::Box box_;
 
@@ -109,7 +115,8 @@ class FixPfv : public Fix {
   std::optional<pfv::FlowState> restored_;
   std::optional<pfv::Report> report_;
   PfvSnapshot last_grains_;
-  bool staged_ = false;
+  PfvCoupling chosen_ = PfvCoupling::explicit_forces;
+  double strain_of_a_step_ = 0.0;  // of the last one, 0 before the first of a run
   std::int64_t chosen_for_ = 0;  // retriangulations when the coupling was chosen
   bool cited_ = false;
 };

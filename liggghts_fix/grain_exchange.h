@@ -36,9 +36,9 @@ class PfvGrainExchange : protected Pointers {
   pfv::Packing packing() const { return grains_.view(); }    ///< as gathered; rank 0
   /// kg, infinite for a grain that no force moves; rank 0.
   const Eigen::VectorXd& masses() const { return masses_; }
-  /// Masses and forces of the last gathering with forces; rank 0.
-  pfv::GrainDynamics dynamics() const {
-    return {{masses_.data(), masses_.size()}, {forces_.data(), 3, forces_.cols()}};
+  /// Masses and forces of the last gathering with forces, and these pistons; rank 0.
+  pfv::GrainDynamics dynamics(const std::array<pfv::Piston, 6>& pistons) const {
+    return {{masses_.data(), masses_.size()}, {forces_.data(), 3, forces_.cols()}, pistons};
   }
   PfvSnapshot snapshot() const;                              ///< rank 0
 

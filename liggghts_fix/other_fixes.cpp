@@ -69,7 +69,7 @@ PfvGroups PfvOtherFixes::groups() const {
   return groups;
 }
 
-std::string PfvOtherFixes::obstacle_to_stages() const {
+std::string PfvOtherFixes::obstacle_to_long_steps() const {
   bool later = false;
   for (int i = 0; i < modify->nfix; ++i) {
     const Fix& other = *modify->fix[i];
@@ -84,12 +84,14 @@ std::string PfvOtherFixes::obstacle_to_stages() const {
     if (!other.rigid_flag && !frozen_before && !adds_later) continue;
     if (!share_grains_with(other)) continue;
     if (other.rigid_flag)
-      return name_of(other) + " moves grains as rigid bodies, which staged coupling cannot; use "
+      return name_of(other) + " moves grains as rigid bodies, which only the "
+                              "explicit coupling can follow; use "
                               "`coupling explicit`";
     if (frozen_before)
       return name_of(other) + " stands before this fix, so that the fluid would move its grains; "
                               "define it after this fix";
-    return name_of(other) + " adds forces after this fix, which staged coupling would not know of; "
+    return name_of(other) + " adds forces after this fix, which staged and implicit "
+                            "coupling would not know of; "
                             "define this fix after it, as the last one that adds forces";
   }
   return {};

@@ -25,9 +25,9 @@ class PfvOtherFixes : protected Pointers {
 
   PfvGroups groups() const;
 
-  /// Why the flow cannot be staged among these fixes, with what to do about it; empty where it can.
-  /// A staged step has to know each force that acts beside the fluid's over the step. Collective.
-  std::string obstacle_to_stages() const;
+  /// Why the flow cannot be staged or implicit among these fixes, with what to do about it; empty where
+  /// it can. Such a step has to know each force that acts beside the fluid's over it. Collective.
+  std::string obstacle_to_long_steps() const;
 
   bool share_grains_with(const class Fix& other) const;  ///< collective
 

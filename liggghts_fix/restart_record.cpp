@@ -9,7 +9,7 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 1.0;
+constexpr double format_number = 2.0;
 
 class Reader {
  public:
@@ -50,6 +50,8 @@ std::vector<double> pack(const PfvRestartRecord& record) {
   append(record.last_positions);
   data.push_back(static_cast<double>(record.flow.pore_pressures.size()));
   append(record.flow.pore_pressures);
+  data.push_back(static_cast<double>(record.flow.lagged_pressures.size()));
+  append(record.flow.lagged_pressures);
   data.push_back(static_cast<double>(record.last_grains.tags.size()));
   append(record.last_grains.tags);
   append(record.last_grains.places);
@@ -75,6 +77,7 @@ PfvRestartRecord unpack(const char* bytes) {
   record.elapsed = reader.next();
   for (double& position : record.last_positions) position = reader.next();
   record.flow.pore_pressures = reader.list<double>(reader.count());
+  record.flow.lagged_pressures = reader.list<double>(reader.count());
   const std::size_t grains = reader.count();
   record.last_grains.tags = reader.list<std::int64_t>(grains);
   record.last_grains.places = reader.list<double>(3 * grains);

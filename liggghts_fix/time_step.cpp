@@ -14,43 +14,98 @@
 
 namespace LAMMPS_NS {
 
+namespace {
+
+const char* name_of(PfvCoupling coupling) {
+  switch (coupling) {
+    case PfvCoupling::staged: return "staged";
+    case PfvCoupling::implicit: return "implicit";
+    default: return "explicit";
+  }
+}
+
+/// The cheaper of the two couplings that go beyond the limit, by what a step costs in solves of the
+/// explicit coupling (doc/stability.md, costs): a stage is a solve and a product with E and S, about
+/// 1.6 sqrt(R) of them a step; an implicit step is one solve with a denser factor, made anew `steps`
+/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB.
+PfvCoupling cheaper(double ratio, double steps, Eigen::Index grains) {
+  constexpr double of_a_stage = 1.15, of_an_implicit_step = 5.0, of_its_factor = 500.0;
+  constexpr Eigen::Index largest = 20000;
+  const double staged = of_a_stage * 1.6 * std::sqrt(ratio);
+  const double implicit = of_an_implicit_step + of_its_factor / steps;
+  return grains <= largest && implicit < staged ? PfvCoupling::implicit : PfvCoupling::staged;
+}
+
+}  // namespace
+
 void FixPfv::bind_coupling() {
   const PfvOtherFixes others(lmp, *this);
   groups_ = others.groups();
   obstacle_.clear();
-  if (!may_stage()) return;
+  if (!needs_forces()) return;
   obstacle_ = settings_.couple_every > 1
-                  ? "staged coupling needs `couple_every 1`; the drag is integrated over each step"
-                  : others.obstacle_to_stages();
-  if (settings_.coupling == PfvCoupling::staged && !obstacle_.empty())
+                  ? "staged and implicit coupling need `couple_every 1`; they integrate the drag over "
+                    "each step"
+                  : others.obstacle_to_long_steps();
+  if (settings_.coupling != PfvCoupling::automatic && !obstacle_.empty())
     error->fix_error(FLERR, this, obstacle_.c_str());
 }
 
-bool FixPfv::may_stage() const { return settings_.coupling != PfvCoupling::explicit_forces; }
+/// Whether the flow may have to know the forces that act beside its own.
+bool FixPfv::needs_forces() const { return settings_.coupling != PfvCoupling::explicit_forces; }
 
 double FixPfv::flow_step() const { return settings_.couple_every * update->dt; }
 
-/// Asked for each network; rank 0.
+double FixPfv::time_step_limit() { return flow_->time_step_limit(grains_.masses(), pistons_); }
+
+/// Asked for each network, and for the first two steps of a run; rank 0.
 void FixPfv::choose_coupling() {
   chosen_for_ = flow_->retriangulations();
-  staged_ = settings_.coupling == PfvCoupling::staged;
+  chosen_ = settings_.coupling;
   if (settings_.coupling != PfvCoupling::automatic) return;
-  const double limit = flow_->time_step_limit(grains_.masses());
-  staged_ = flow_step() > settings_.safety * limit;
-  if (!staged_ || obstacle_.empty()) return;
-  char text[120];
-  std::snprintf(text, sizeof text, "the flow step of %g s is above the explicit limit of %g s: ",
-                flow_step(), limit);
-  throw pfv::InputError(text + obstacle_);
+  const double limit = time_step_limit();
+  const double ratio = flow_step() / (settings_.safety * limit);
+  if (ratio > 1.0 && !obstacle_.empty()) {
+    char text[120];
+    std::snprintf(text, sizeof text, "the flow step of %g s is above the explicit limit of %g s: ",
+                  flow_step(), limit);
+    throw pfv::InputError(text + obstacle_);
+  }
+  constexpr double unknown = 100.0;  // steps, before the first one has been seen
+  const double steps =
+      strain_of_a_step_ > 0.0 ? settings_.options.retriangulation_strain / strain_of_a_step_ : unknown;
+  chosen_ = ratio > 1.0 ? cheaper(ratio, steps, grains_.masses().size())
+                        : PfvCoupling::explicit_forces;
 }
 
 void FixPfv::step_flow() {
-  if (staged_)
-    flow_->step_staged(grains_.packing(), elapsed_, grains_.dynamics());
-  else
-    flow_->step(grains_.packing(), elapsed_);
-  if (settings_.coupling == PfvCoupling::automatic && chosen_for_ != flow_->retriangulations())
-    choose_coupling();
+  const double before = flow_->strain();
+  const std::int64_t network = flow_->retriangulations();
+  switch (chosen_) {
+    case PfvCoupling::staged:
+      flow_->step_staged(grains_.packing(), elapsed_, dynamics());
+      break;
+    case PfvCoupling::implicit:
+      flow_->step_implicit(grains_.packing(), elapsed_, dynamics());
+      break;
+    default: flow_->step(grains_.packing(), elapsed_);
+  }
+  if (settings_.coupling != PfvCoupling::automatic) return;
+  const bool kept = network == flow_->retriangulations();
+  const bool first = strain_of_a_step_ == 0.0;
+  strain_of_a_step_ = flow_->strain() - (kept ? before : 0.0);
+  if (first || chosen_for_ != flow_->retriangulations()) choose_coupling();
+}
+
+/// The chosen coupling at the setup of a run. What an earlier run saw is forgotten, as it would be in one
+/// that starts from a restart file.
+void FixPfv::evaluate_flow() {
+  strain_of_a_step_ = 0.0;
+  choose_coupling();
+  if (chosen_ == PfvCoupling::staged)
+    flow_->evaluate_staged(grains_.packing(), flow_step(), dynamics());
+  else if (chosen_ == PfvCoupling::implicit)
+    flow_->evaluate_implicit(grains_.packing(), flow_step(), dynamics());
 }
 
 /// The papers' estimate pi rho d^2 / (1200 mu) of the grain that is worst off, s.
@@ -65,20 +120,24 @@ double FixPfv::estimated_limit() const {
 
 /// Says where the time step stands, at the beginning of a run; rank 0.
 void FixPfv::check_time_step() {
-  if (!settings_.time_step_check && !may_stage()) return;
-  const double limit = flow_->time_step_limit(grains_.masses());
+  if (!settings_.time_step_check && !needs_forces()) return;
+  const double limit = time_step_limit();
   const double ratio = flow_step() / limit;
-  char text[320];
+  const auto pistons = std::count_if(pistons_.begin(), pistons_.end(), [](const pfv::Piston& piston) {
+    return std::isfinite(piston.mass);
+  });
+  char text[400];
   std::snprintf(text, sizeof text,
                 "Fix pfv (id %s): limit of the explicit coupling %.4g s (papers' pi rho d^2/(1200 "
-                "mu): %.4g s), flow step %.4g s, ratio %.4g, %s coupling, stages %d\n",
-                id, limit, estimated_limit(), flow_step(), ratio, staged_ ? "staged" : "explicit",
-                flow_->stages());
+                "mu): %.4g s), flow step %.4g s, ratio %.4g, pistons %d, %s coupling, stages %d\n",
+                id, limit, estimated_limit(), flow_step(), ratio, static_cast<int>(pistons),
+                name_of(chosen_), flow_->stages());
   print(text);
-  if (may_stage() || ratio <= settings_.safety) return;
+  if (needs_forces() || ratio <= settings_.safety) return;
   std::snprintf(text, sizeof text,
                 "Fix pfv (id %s): the flow step of %.4g s is %.4g times the limit of the explicit "
-                "coupling; grains will shake. Use a time step below %.3g s, or `coupling staged`",
+                "coupling; grains will shake. Use a time step below %.3g s, `coupling staged` or "
+                "`coupling implicit`",
                 id, flow_step(), ratio, settings_.safety * limit / settings_.couple_every);
   error->warning(FLERR, text);
 }

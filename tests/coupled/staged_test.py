@@ -1,30 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Staged coupling: stable at many times the explicit limit, and the same physics.
-
-The sample: 125 grains under gravity between six walls, its contacts at rest in the data file; in the
-tests gravity grows by a third and water leaves through bottom and top. R is the time step over the
-explicit limit that the fix reports.
-"""
+"""Staged coupling: stable at many times the explicit limit, and the same physics, on the sample of
+settled.py."""
 import math
 import unittest
 
-from coupled import EDGE, FACES, CoupledTest, dump, faces, forces, largest_difference, packing
-from coupled import read_dump, read_thermo, restarted_head, write_data
+from coupled import EDGE, dump, forces, largest_difference
+from coupled import read_dump, read_thermo, restarted_head
 from plates import square, write_plate
-
-WALLS = "".join(
-    f"fix w{face} all wall/gran model hooke/stiffness tangential history primitive type 1 "
-    f"{face[0]}plane {EDGE if face.endswith('hi') else 0.0}\n" for face in FACES)
-GRAVITY = "fix g all gravity {0} vector 0 0 -1\n"
-OPEN = faces(zlo="pressure 0", zhi="pressure 0") + " density 0"
-STEP = 1e-4  # s; contacts are stable to about 6e-4 s
-THERMO = ("compute height all reduce ave z\n"
-          "thermo_style custom step ke c_height f_flow f_flow[5] f_flow[6] f_flow[7] f_flow[9]\n"
-          "thermo_modify norm no format float %.15g\n")
-SETTLE = ("include in.packing\n" + WALLS + GRAVITY.format(30) + "fix v all viscous 1.0\n"
-          f"timestep {STEP}\nrun 3000\n"
-          "dump e all custom 1 rest.dump id x y z radius\n"
-          "dump_modify e sort id format \"%d" + " %.17g" * 4 + "\"\nrun 0\n")
+from settled import GRAVITY, STEP, THERMO, WALLS, SettledTest
 
 
 def stages_for(ratio):
@@ -40,36 +23,7 @@ def stages_for(ratio):
         s += 1
 
 
-class Staged(CoupledTest):
-    rest = None  # the settled grains, made once
-    limit = None  # s, of the explicit coupling at a viscosity of 1 Pa s
-
-    def setUp(self):
-        super().setUp()
-        if not Staged.rest:
-            write_data(self.folder, [(n, x, y, z, 1.35 * r) for n, x, y, z, r in packing(5)])
-            self.liggghts(SETTLE)
-            rows = (self.folder / "rest.dump").read_text().splitlines()[9:]
-            Staged.rest = [(int(row.split()[0]), *map(float, row.split()[1:])) for row in rows]
-            write_data(self.folder, Staged.rest)
-            Staged.limit = self.thermo(self.script(self.fix(1.0), "run 0\n"))[0]["flow[6]"]
-        write_data(self.folder, Staged.rest)
-
-    def fix(self, viscosity, words=""):
-        return f"fix flow all pfv viscosity {viscosity!r} {OPEN} {words}\n"
-
-    def at_ratio(self, ratio, words="coupling staged"):
-        """The fix with the viscosity at which STEP is `ratio` times the explicit limit."""
-        return self.fix(ratio * Staged.limit / STEP, words)
-
-    def script(self, fix, run, step=STEP, before=""):
-        return ("include in.packing\n" + WALLS + GRAVITY.format(40) + before + fix +
-                f"timestep {step!r}\n" + THERMO + run)
-
-    def thermo(self, script, **options):
-        self.liggghts(script, **options)
-        return read_thermo((self.folder / "log.liggghts").read_text())
-
+class Staged(SettledTest):
     # stability
 
     def test_explicit_coupling_explodes_where_staged_does_not(self):
@@ -221,7 +175,7 @@ class Staged(CoupledTest):
         self.liggghts(self.script(self.at_ratio(0.5, "coupling auto"), late + "run 5\n"))
 
     def test_unknown_coupling(self):
-        self.refuse("", "'implicit'", "staged", fix="coupling implicit")
+        self.refuse("", "'semi'", "implicit", fix="coupling semi")
 
     def test_limit_is_printed_and_a_step_above_it_warned_of(self):
         def said(ratio, words, after=""):
@@ -231,8 +185,8 @@ class Staged(CoupledTest):
                      "WARNING" not in line], [line for line in lines if "WARNING" in line])
         told, warned = said(20, "")
         self.assertEqual((len(told), len(warned)), (1, 1))
-        viscosity = 20 * Staged.limit / STEP
-        smallest = min(row[4] for row in Staged.rest)
+        viscosity = 20 * self.limit / STEP
+        smallest = min(row[4] for row in self.rest)
         estimate = math.pi * 2600 * (2 * smallest)**2 / (1200 * viscosity)
         for part in (f"coupling {STEP / 20:.4g} s", f"{estimate:.4g} s", "ratio 20,"):
             self.assertIn(part, told[0])

@@ -31,6 +31,7 @@ struct FlowState {
   double strain = 0.0;                     ///< accumulated since the last triangulation
   std::int64_t retriangulations = 0;       ///< triangulations after the first
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
+  std::vector<double> lagged_pressures;    ///< p_old of implicit steps, likewise; empty without them
 };
 
 /// A face that moves freely along its axis: a piston. By default its velocity is prescribed.
@@ -82,9 +83,9 @@ class FlowModel {
   /// The same advance at any dt for one solve with the denser matrix A = G + dt E M^-1 E^T: pressures
   /// and the velocities v(n+3/2) that follow from all forces over dt are found together, so that
   /// continuity holds exactly for the velocities with which the host moves the grains next. The forces
-  /// are E^T p + (S - E^T) p_old with the pressures of the last step; after a new network or another
-  /// coupling, p_old comes from one more solve, and beyond some hundred limits it follows the
-  /// pressures slowly. Stable where the contacts are; of first order in dt. What `grains` says of
+  /// are E^T p + (S - E^T) p_old with the pressures of the last step, which beyond some tens of limits
+  /// p_old follows more slowly; a new network takes them over, and the first step finds its own by
+  /// four more solves. Stable where the contacts are; of first order in dt. What `grains` says of
   /// masses and forces must be what the host integrates; A is factored anew when a mass or dt changes.
   /// Throws InputError for a model that has no such step.
   virtual const Forces& step_implicit(const Packing& packing, double dt, const GrainDynamics& grains);

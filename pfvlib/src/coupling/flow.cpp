@@ -119,8 +119,10 @@ double Flow::strain() const { return data_->strain; }
 
 FlowState Flow::state() const {
   const Eigen::VectorXd& p = data_->old_pressures;
+  const Eigen::VectorXd& lagged = data_->lagged;
   return {data_->time, data_->strain, data_->retriangulations,
-          std::vector<double>(p.data(), p.data() + p.size())};
+          std::vector<double>(p.data(), p.data() + p.size()),
+          std::vector<double>(lagged.data(), lagged.data() + lagged.size())};
 }
 
 void Flow::set_state(FlowState state) {
@@ -128,6 +130,7 @@ void Flow::set_state(FlowState state) {
   data_->strain = state.strain;
   data_->retriangulations = state.retriangulations;
   data_->pending_pressures = std::move(state.pore_pressures);
+  data_->pending_lagged = std::move(state.lagged_pressures);
 }
 
 const Forces& Flow::forces() const {

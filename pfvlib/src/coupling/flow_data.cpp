@@ -70,19 +70,21 @@ void FlowData::rebuild_if_stale(const Packing& packing) {
   if (!needs_rebuild(packing)) return;
   const bool first = counts.triangulate == 0;
   const std::unique_ptr<BuiltNetwork> old = std::move(built);
-  const Eigen::VectorXd old_values = old_pressures;
   stale = true;
   build(packing);
-  if (fluid.bulk_modulus) {
-    old_pressures = Eigen::VectorXd::Zero(built->network.pores());
-    if (static_cast<int>(pending_pressures.size()) == built->network.pores())
-      old_pressures = Eigen::Map<const Eigen::VectorXd>(pending_pressures.data(),
-                                                        old_pressures.size());
-    else if (old && old_values.size() == old->network.pores())
-      old_pressures = carried_pressures(*old, old_values, *built);
-  }
-  pending_pressures.clear();
-  lagged.resize(0);
+  const int pores = built->network.pores();
+  const auto take_over = [&](Eigen::VectorXd& values, std::vector<double>& pending) {
+    if (!pending.empty() && static_cast<int>(pending.size()) == pores)
+      values = Eigen::Map<const Eigen::VectorXd>(pending.data(), pores);
+    else if (old && values.size() > 0 && values.size() == old->network.pores())
+      values = carried_pressures(*old, values, *built);
+    else
+      values.resize(0);
+    pending.clear();
+  };
+  take_over(old_pressures, pending_pressures);
+  take_over(lagged, pending_lagged);
+  if (fluid.bulk_modulus && old_pressures.size() == 0) old_pressures.setZero(pores);
   stale = false;
   strain = 0.0;
   if (!first) ++retriangulations;

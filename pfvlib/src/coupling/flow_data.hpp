@@ -54,7 +54,7 @@ struct FlowData {
   Forces forces;
   Box solved_box;  ///< the box may be another by the time that a balance is asked for
   std::vector<std::int64_t> packing_ids;
-  std::vector<double> pending_pressures;  ///< from set_state, for the next network
+  std::vector<double> pending_pressures, pending_lagged;  ///< from set_state, for the next network
 
   /// Only the explicit step needs no `grains`.
   const Forces& compute(const Packing& packing, double step, bool advance,

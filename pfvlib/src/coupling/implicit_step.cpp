@@ -15,7 +15,7 @@ namespace {
 /// pressures at once. In a few motions the papers' S feeds energy to the grains, at a rate in proportion
 /// to 1/limit, so that at many limits a step it outgrows the contacts that hide it. Followed more slowly,
 /// the feeding is divided by what E^T damps in the meantime.
-constexpr double prompt_limits = 500.0;
+constexpr double prompt_limits = 30.0;
 
 }  // namespace
 
@@ -150,13 +150,20 @@ void FlowData::run_implicit(const Packing& packing, double step, double at_time,
     rates_of_motion(velocities(imposed, others));
     solve_pressures(at_time, *built->implicit->solver);
   };
+  const auto corrected = [&](const Eigen::VectorXd& old) {
+    return Eigen::Matrix3Xd(held + forces_with_faces(*built, old) - multiply(energy_forces, old));
+  };
   if (lagged.size() == 0) {
+    constexpr int sweeps = 3;
     solve(held);
     lagged = relative_pressures;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      solve(corrected(lagged));
+      lagged += relaxation * (relative_pressures - lagged);
+    }
   }
   force_lag = lagged;
-  const Eigen::Matrix3Xd others =
-      held + forces_with_faces(*built, force_lag) - multiply(energy_forces, force_lag);
+  const Eigen::Matrix3Xd others = corrected(force_lag);
   solve(others);
   rates_of_motion(velocities(relative_pressures, others));
   refuse_isolated(built->implicit->system.isolated);
