@@ -24,6 +24,7 @@ if [ "${1:-}" = long ]; then
   "$root/run.sh" oedometer N=5000
   "$root/run.sh" oedometer study
   "$root/run.sh" stability write
+  "$root/run.sh" darcy_outlet
   "$root/doc/accuracy.py"
   "$root/tests/bench/table.py"
 fi

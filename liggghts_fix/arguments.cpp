@@ -281,8 +281,8 @@ void check_all(const PfvSettings& settings) {
   if (!settings.grid) return;
   pfv::check(*settings.grid, settings.fluid, settings.options);
   if (settings.coupling != PfvCoupling::explicit_forces)
-    throw pfv::InputError("darcy_grid has no staged coupling: use `coupling explicit` (the default), "
-                          "or the model pfv");
+    throw pfv::InputError("darcy_grid has no staged coupling: use `coupling explicit` (the "
+                          "default), or the model pfv");
 }
 
 void require_all_faces(const PfvSettings& settings) {

@@ -9,7 +9,8 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 
 class Fields:
-    """Points and their arrays; `ends` are the two pores of each throat, `flux` its flow rate."""
+    """Points and their arrays; `ends` are the two pores of each throat, `flux` its flow rate;
+    `cells` are the arrays of the cells."""
 
     def __init__(self, path):
         reader = vtkXMLUnstructuredGridReader()
@@ -19,9 +20,9 @@ class Fields:
             raise OSError(f"{path}: VTK cannot read it")
         grid = reader.GetOutput()
         self.points = vtk_to_numpy(grid.GetPoints().GetData())
-        data = grid.GetPointData()
-        self.arrays = {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k))
-                       for k in range(data.GetNumberOfArrays())}
+        self.arrays, self.cells = ({data.GetArrayName(k): vtk_to_numpy(data.GetArray(k))
+                                    for k in range(data.GetNumberOfArrays())}
+                                   for data in (grid.GetPointData(), grid.GetCellData()))
         flux = grid.GetCellData().GetArray("flux")
         if flux:
             nodes = vtk_to_numpy(grid.GetCells().GetConnectivityArray())

@@ -58,9 +58,9 @@ class DarcyGrid(CommandTest):
                             ((*GRID, "--periodic", "x"), "no periodic axes"),
                             ((*GRID, "--partition", "yade"), "no partition")):
             with self.subTest(words=words):
-                self.assert_refused(self.run_pfv("solve", "--packing", self.write("p.csv",
-                                    "id,x,y,z,radius\n1,.5,.5,.5,.4\n"), "--box", *"010101", *words),
-                                    part)
+                packing = self.write("p.csv", "id,x,y,z,radius\n1,.5,.5,.5,.4\n")
+                self.assert_refused(self.run_pfv("solve", "--packing", packing, "--box", *"010101",
+                                                 *words), part)
 
 
 if __name__ == "__main__":

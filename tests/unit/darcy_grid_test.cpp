@@ -292,8 +292,8 @@ TEST(DarcyGrid, TimeStepLimitIsThatOfTheDragAlone) {
 }
 
 TEST(DarcyGrid, ALightPistonLowersTheTimeStepLimit) {
-  // over a column that drains at its base: what the piston pushes out of the uppermost cell flows from
-  // its centre on, so that the force is w (H - h/2) mu/K a unit area
+  // over a column that drains at its base: what the piston pushes out of the uppermost cell flows
+  // from its centre on, so that the force is w (H - h/2) mu/K a unit area
   pfv::Box box;
   box[Face::zlo].boundary = Boundary::pressure(0.0);
   DarcyGrid flow(box, support::viscosity_one(), grid_of(1, 1, 8));

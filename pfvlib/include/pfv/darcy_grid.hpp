@@ -9,10 +9,10 @@
 
 namespace pfv {
 
-/// Drag of the fluid on a grain of a coarse cell. `di_felice`: the drag of a single sphere times a power
-/// of the porosity, as in the CFD module that the Darcy example of PFC uses. `kozeny_carman`: what the
-/// flow itself resists, shared among the grains by volume, so that fluid and grains exchange exactly the
-/// same momentum.
+/// Drag of the fluid on a grain of a coarse cell. `di_felice`: the drag of a single sphere times a
+/// power of the porosity, as in the CFD module that the Darcy example of PFC uses. `kozeny_carman`:
+/// what the flow itself resists, shared among the grains by volume, so that fluid and grains
+/// exchange exactly the same momentum.
 enum class DragLaw { di_felice, kozeny_carman };
 
 const char* name_of(DragLaw law);
@@ -23,29 +23,30 @@ struct DarcyOptions {
   std::array<int, 3> cells{1, 1, 1};  ///< along x, y, z; > 0. Two grain diameters a cell or more
   int refresh_every = 1;              ///< steps between two looks at the porosity, > 0
   DragLaw drag = DragLaw::di_felice;
-  /// The grains carry fluid with them and displace it. false: a steady flow through grains at rest, in
-  /// which they move, as in the example.
+  /// The grains carry fluid with them and displace it. false: a steady flow through grains at rest,
+  /// in which they move, as in the example.
   bool grain_motion = true;
 };
 
-/// Throws InputError for numbers of cells or steps < 1, and for what a grid has no place for: a bulk
-/// modulus, options that shape a pore network.
+/// Throws InputError for numbers of cells or steps < 1, and for what a grid has no place for: a
+/// bulk modulus, options that shape a pore network.
 void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options);
 
 struct DarcyData;
 
 /// Darcy flow on a coarse grid of equal cells that fill the box: the other model of a fluid between
-/// grains. Each cell has the porosity of the grains in it and a permeability from Kozeny-Carman; finite
-/// volumes give its pressure; the velocity at its centre gives the drag on its grains. It needs cells of
-/// several grains and knows pores by their share of the volume only (doc/darcy_grid.md).
+/// grains. Each cell has the porosity of the grains in it and a permeability from Kozeny-Carman;
+/// finite volumes give its pressure; the velocity at its centre gives the drag on its grains. It
+/// needs cells of several grains and knows pores by their share of the volume only
+/// (doc/darcy_grid.md).
 ///
-/// Porosity, permeability and factor are made at the first call and kept until `refresh_every` steps
-/// have been taken, until spheres appear, vanish, enter or leave the box, or until `rebuild` asks. In
-/// between a call costs one pass over the grains and, where rates or boundary values have changed, one
-/// solve. A call after `rebuild` does not count as a step.
+/// Porosity, permeability and factor are made at the first call and kept until `refresh_every`
+/// steps have been taken, until spheres appear, vanish, enter or leave the box, or until `rebuild`
+/// asks. In between a call costs one pass over the grains and, where rates or boundary values have
+/// changed, one solve. A call after `rebuild` does not count as a step.
 ///
-/// Of `Options` it takes solver, ordering, precision, threads, outside, forces, split_forces (the viscous part is the drag),
-/// buoyancy and sphere_pressure; periodic axes are refused.
+/// Of `Options` it takes solver, ordering, precision, threads, outside, forces, split_forces (the
+/// viscous part is the drag), buoyancy and sphere_pressure; periodic axes are refused.
 class DarcyGrid final : public FlowModel {
  public:
   DarcyGrid(Box box, Fluid fluid, DarcyOptions grid, Options options = {});
@@ -93,7 +94,7 @@ class DarcyGrid final : public FlowModel {
   const Eigen::VectorXd& cell_pressures() const;      ///< Pa, at the centre
   const Eigen::VectorXd& cell_porosities() const;     ///< 1 - sum of the spheres' parts / volume
   const Eigen::VectorXd& cell_permeabilities() const; ///< m²
-  Eigen::Matrix3Xd cell_velocities() const;  ///< m/s, fluid per total area and time against the grains
+  Eigen::Matrix3Xd cell_velocities() const;  ///< m/s, of the fluid over the total area
   Eigen::Vector3d cell_lengths() const;  ///< m, edges of a cell
   Eigen::Vector3d lower_corner() const;  ///< m, of the first cell
 

@@ -28,8 +28,8 @@ std::optional<int> axis_of_flow(const Box& box);
 std::optional<double> permeability_of(const Box& box, int axis, double viscosity,
                                       const Totals& totals, double difference);
 
-/// |sum| of the forces on spheres and faces, over the largest pressure times the largest face, or over
-/// what a macroscopic gradient drives where that is more.
+/// |sum| of the forces on spheres and faces, over the largest pressure times the largest face, or
+/// over what a macroscopic gradient drives where that is more.
 double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, const Box& box,
                            double driven);
 

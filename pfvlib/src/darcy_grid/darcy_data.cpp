@@ -154,8 +154,8 @@ void DarcyData::refuse_undetermined() const {
   if (moving || flux)
     throw InputError(std::string("darcy_grid: ") +
                      (flux ? "a flux is imposed" : "the grains or faces move") +
-                     " and no face or patch has a pressure: nothing determines the pressure; give a "
-                     "pressure to a face");
+                     " and no face or patch has a pressure: nothing determines the pressure; give "
+                     "a pressure to a face");
 }
 
 /// Solves anew only where rates or boundary values have changed.

@@ -12,17 +12,21 @@ namespace pfv {
 struct CellState {
   Eigen::VectorXd porosity, permeability;  ///< -, m²
   Eigen::Matrix3Xd gradient;               ///< Pa/m
-  Eigen::Matrix3Xd discharge;  ///< m/s, flow rate of the fluid over the total area, against the grains
-  Eigen::Matrix3Xd carried;    ///< m/s, mean velocity of the grains that carry the fluid along, or 0
+  Eigen::Matrix3Xd discharge;  ///< m/s, of the fluid over the total area, against the grains
+  Eigen::Matrix3Xd carried;    ///< m/s, of the grains that carry the fluid along, or 0
 };
 
-/// The velocity of the grains in each cell, weighted by their volume there, m/s; 0 where there is none.
-Eigen::Matrix3Xd grain_velocities(const SolidOverlaps& overlaps, const Eigen::Matrix3Xd& velocities);
+/// The velocity of the grains in each cell, weighted by their volume there, m/s; 0 where there is
+/// none.
+Eigen::Matrix3Xd grain_velocities(const SolidOverlaps& overlaps,
+                                  const Eigen::Matrix3Xd& velocities);
 
-/// Volume that moving grains push out of each cell, m³/s: across a face between cells goes the mean of
-/// the grains in both, by volume, at a face of the box its own velocity. Adds up to the rate of the box.
+/// Volume that moving grains push out of each cell, m³/s: across a face between cells goes the mean
+/// of the grains in both, by volume, at a face of the box its own velocity. Adds up to the rate of
+/// the box.
 Eigen::VectorXd volume_rates(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
-                             const SolidOverlaps& overlaps, const Eigen::Matrix3Xd& cell_velocities);
+                             const SolidOverlaps& overlaps,
+                             const Eigen::Matrix3Xd& cell_velocities);
 
 /// Drag per volume of grain and per velocity, Pa s/m², for a velocity U (m/s) over the total area.
 /// Di Felice 1994 with the drag coefficient of Dallavalle: the force on a sphere of radius r is

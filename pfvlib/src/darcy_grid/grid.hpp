@@ -43,8 +43,8 @@ struct Grid {
 
 Grid make_grid(const Box& box, const std::array<int, 3>& counts);
 
-/// Where the box ends: one entry a cell face on it, by face and then by cell. Boundary number f < 6 is
-/// face f, 6 + i is patch i.
+/// Where the box ends: one entry a cell face on it, by face and then by cell. Boundary number f < 6
+/// is face f, 6 + i is patch i.
 struct GridFace {
   int cell;
   Face face;

@@ -45,8 +45,8 @@ bool has_pressure(const std::vector<GridFace>& faces, const Box& box) {
   return false;
 }
 
-GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const Box& box, double time,
-                   double reference) {
+GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+                   double time, double reference) {
   const auto count = static_cast<Eigen::Index>(faces.size());
   GridDrive drive{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
   std::vector<int> shares(6 + box.patches.size(), 0);
@@ -98,8 +98,8 @@ SymmetricMatrix assemble(const Grid& grid, const std::vector<GridFace>& faces, c
   return matrix;
 }
 
-Eigen::VectorXd right_hand_side(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
-                                const Eigen::VectorXd& mobility, const GridDrive& drive,
+Eigen::VectorXd right_hand_side(const Grid& grid, const std::vector<GridFace>& faces,
+                                const Box& box, const Eigen::VectorXd& mobility, const GridDrive& drive,
                                 const Eigen::VectorXd& sources) {
   Eigen::VectorXd b = sources;
   for (std::size_t f = 0; f < faces.size(); ++f) {

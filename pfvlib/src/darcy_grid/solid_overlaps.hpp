@@ -9,8 +9,8 @@
 
 namespace pfv {
 
-/// How the spheres lie in the cells: the parts of sphere k are [begin[k], begin[k + 1]). Where spheres
-/// overlap each other, both count, as in the Darcy example of PFC.
+/// How the spheres lie in the cells: the parts of sphere k are [begin[k], begin[k + 1]). Where
+/// spheres overlap each other, both count, as in the Darcy example of PFC.
 struct SolidOverlaps {
   std::vector<int> begin{0};
   std::vector<int> cell;
@@ -21,8 +21,8 @@ struct SolidOverlaps {
   int spheres() const { return static_cast<int>(begin.size()) - 1; }
 };
 
-/// Exact parts of every sphere (pfv/geometry/ball_corner). They add up to the sphere inside the box to
-/// some 1e-15 of it. Cost: about a microsecond a sphere that is smaller than a cell.
+/// Exact parts of every sphere (pfv/geometry/ball_corner). They add up to the sphere inside the box
+/// to some 1e-15 of it. Cost: about a microsecond a sphere that is smaller than a cell.
 SolidOverlaps solid_overlaps(const Spheres& spheres, const Grid& grid);
 
 }  // namespace pfv
