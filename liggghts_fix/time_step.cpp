@@ -29,7 +29,7 @@ const char* name_of(PfvCoupling coupling) {
 /// 1.6 sqrt(R) of them a step; an implicit step is one solve with a denser factor, made anew `steps`
 /// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB.
 PfvCoupling cheaper(double ratio, double steps, Eigen::Index grains) {
-  constexpr double of_a_stage = 1.15, of_an_implicit_step = 5.0, of_its_factor = 500.0;
+  constexpr double of_a_stage = 1.15, of_an_implicit_step = 8.0, of_its_factor = 800.0;
   constexpr Eigen::Index largest = 20000;
   const double staged = of_a_stage * 1.6 * std::sqrt(ratio);
   const double implicit = of_an_implicit_step + of_its_factor / steps;

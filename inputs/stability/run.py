@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the explicit coupling of LIGGGHTS with the fluid becomes unstable, and how far the staged
-one goes: the tables of doc/stability.md.
+and the implicit one go: the tables of doc/stability.md.
 
     run.py         called by ./run.sh stability; prints the tables
     run.py write   puts them into doc/stability.md as well
@@ -22,16 +22,18 @@ EDGE, DENSITY = 0.1, 2600.0  # m, kg/m3
 CELLS = 5
 SAMPLES = {"dense": 1.35, "loose": 1.0}  # factor on the radii of a jittered grid
 VISCOSITIES = [10.0**k for k in range(1, 7)]  # Pa s
-RATIOS = [2, 10, 50, 100, 200, 500, 1000]
+RATIOS = [2, 10, 100, 200, 1000, 10000]
+CONTACT_PARTS = {"a sixth": 1e-4, "half": 3e-4}  # of the contact limit of 6e-4 s: time step, s
+COST_CELLS = [8, 12, 17]  # along each edge: 512, 1728 and 4913 grains
 GROWTH_RATIOS = [0.5, 20, 100, 1000]
 STEPS = 1000
 
 
-def grid(factor, rng):
-    step = EDGE / CELLS
+def grid(factor, rng, cells=CELLS):
+    step = EDGE / cells
     return [[(n + 0.5 + rng.uniform(-0.08, 0.08)) * step for n in (i, j, k)] +
             [factor * step * rng.uniform(0.36, 0.41)]
-            for i in range(CELLS) for j in range(CELLS) for k in range(CELLS)]
+            for i in range(cells) for j in range(cells) for k in range(cells)]
 
 
 def write_data(path, grains, speed, rng):
@@ -134,20 +136,82 @@ def power(value):
     return f"{value:.1e}" if math.isfinite(value) else "ended by an error"
 
 
-def staged_table(data, step=1e-4, steps=1000):
-    """At a fixed time step, which the contacts allow; the viscosity sets R."""
+def beyond_table(data, steps=1000):
+    """At two time steps, which the contacts allow; the viscosity sets R."""
     limit, _ = printed(data, 1.0)
-    lines = ["| R | viscosity, Pa s | stages | staged: energy after 1000 steps "
-             "| explicit: energy after 3 steps |", "|---|---|---|---|---|"]
+    lines = ["| R | time step, of the contacts' limit | viscosity, Pa s | stages | staged | implicit "
+             "| explicit, after 3 steps |", "|---|---|---|---|---|---|---|"]
     for ratio in RATIOS:
-        viscosity = ratio * limit / step
-        screen = must(liggghts("in.stability", data=data, viscosity=viscosity, dt=step, steps=0,
-                               words="coupling staged"))
-        stages = rows_of(screen)[0][3]
-        left = growth(data, viscosity, step, steps, "coupling staged")
-        explicit = growth(data, viscosity, step, 3, "time_step_check no")
-        lines.append(f"| {ratio} | {viscosity:.3g} | {stages:.0f} | {power(left)} | "
-                     f"{power(explicit)} |")
+        for part, step in CONTACT_PARTS.items():
+            viscosity = ratio * limit / step
+            screen = must(liggghts("in.stability", data=data, viscosity=viscosity, dt=step, steps=0,
+                                   words="coupling staged"))
+            left = [power(growth(data, viscosity, step, steps, f"coupling {coupling}"))
+                    for coupling in ("staged", "implicit")]
+            explicit = power(growth(data, viscosity, step, 3, "time_step_check no"))
+            lines.append(f"| {ratio} | {part} | {viscosity:.3g} | {rows_of(screen)[0][3]:.0f} | "
+                         f"{left[0]} | {left[1]} | {explicit} |")
+            print(lines[-1], flush=True)
+    return lines
+
+
+def consolidation(data, viscosity, step, words, time=0.032):
+    """(heights, mean pressures, retriangulations, CPU seconds) of a consolidation."""
+    before = os.times().children_user
+    screen = must(liggghts("in.consolidation", data=data, viscosity=viscosity, dt=repr(step),
+                           steps=round(time / step), words=words))
+    rows = rows_of(screen)
+    return ([row[1] for row in rows], [row[2] for row in rows], rows[-1][3],
+            os.times().children_user - before)
+
+
+def accuracy_table(data):
+    """Against the explicit coupling at a fifth of its own limit."""
+    limit, _ = printed(data, 1.0)
+    viscosity = 20 * limit / 1e-4
+    heights, pressures, *_ = consolidation(data, viscosity, 1e-6, "time_step_check no")
+    settled, peak = abs(heights[-1] - heights[0]), max(pressures[1:])
+    lines = ["| coupling | time step, s | R | settlement | pressure | pressure, last quarter "
+             "| new networks | CPU / explicit at 0.8 of its limit |", "|---|---|---|---|---|---|---|---|"]
+    cases = [("explicit", 4e-6)] + [(coupling, step) for coupling in ("staged", "implicit")
+                                    for step in (2e-4, 1e-4, 5e-5, 2.5e-5)]
+    explicit_cpu = None
+    for coupling, step in cases:
+        words = "time_step_check no" if coupling == "explicit" else f"coupling {coupling}"
+        h, p, networks, cpu = consolidation(data, viscosity, step, words)
+        explicit_cpu = explicit_cpu or cpu
+        off = [abs(a - b) / peak for a, b in zip(p, pressures)][1:]
+        settlement = max(abs(a - b) for a, b in zip(h, heights)) / settled
+        lines.append(f"| {coupling} | {step:g} | {20 * step / 1e-4:.2g} | {100 * settlement:.2f} % | "
+                     f"{100 * max(off):.2f} % | {100 * max(off[-4:]):.2f} % | {networks:.0f} | "
+                     f"{cpu / explicit_cpu:.3f} |")
+        print(lines[-1], flush=True)
+    return lines
+
+
+def phase_seconds(data, viscosity, step, words, steps=20):
+    """CPU seconds of ordering and factorising, and of one solve, as the fix prints them."""
+    screen = must(liggghts("in.stability", data=data, viscosity=viscosity, dt=repr(step),
+                           steps=steps, words=words))
+    found = {name: (float(seconds), int(count)) for name, seconds, count in
+             re.findall(r"^(order|factor|solve) +(\S+) +(\d+)$", screen, re.M)}
+    return found["order"][0] + found["factor"][0], found["solve"][0] / found["solve"][1]
+
+
+def cost_table():
+    lines = ["| grains | order and factor: A / G | solve: A / G | order and factor of A, in solves with G |",
+             "|---|---|---|---|"]
+    for cells in COST_CELLS:
+        rng = random.Random(1)
+        data = SCENE / "post" / f"cost_{cells}.data"
+        write_data(data, grid(1.35, rng, cells), 1e-9, rng)
+        viscosity = 1e4  # steps so short that contacts have no say
+        limit, _ = printed(data, viscosity)
+        g_factor, g_solve = phase_seconds(data, viscosity, 0.5 * limit, "time_step_check no")
+        both_factors, a_solve = phase_seconds(data, viscosity, 100 * limit, "coupling implicit")
+        a_factor = both_factors - g_factor  # the run makes that of G, too
+        lines.append(f"| {cells**3} | {a_factor / g_factor:.1f} | {a_solve / g_solve:.1f} | "
+                     f"{a_factor / g_solve:.0f} |")
         print(lines[-1], flush=True)
     return lines
 
@@ -184,8 +248,8 @@ def main(words):
     if words not in ([], ["write"]):
         raise SystemExit("stability: use `run.py` or `run.py write`")
     samples = {name: make_sample(name, factor) for name, factor in SAMPLES.items()}
-    tables = {"staged": staged_table(samples["dense"]), "growth": growth_table(samples),
-              "limits": limits_table(samples)}
+    tables = {"beyond": beyond_table(samples["dense"]), "accuracy": accuracy_table(samples["dense"]),
+              "costs": cost_table(), "growth": growth_table(samples), "limits": limits_table(samples)}
     (SCENE / "post" / "tables.json").write_text(json.dumps(tables, indent=1) + "\n")
     if words:
         write_page(tables)
