@@ -8,6 +8,7 @@ quote ratios of one table. Peak memory is that of one `pfv solve` a size, in a p
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -65,7 +66,9 @@ def main():
             ("mass error", lambda r: f"{abs(r['mass_error']):.1e}"))
     for name, value in rows:
         text += f"| {name} | " + " | ".join(str(value(reports[size])) for size in SIZES) + " |\n"
-    (ROOT / "doc/benchmarks.md").write_text(text)
+    document = ROOT / "doc/benchmarks.md"
+    others = re.search(r"\n## (Against YADE|Only what a scene needs)\n.*", document.read_text(), re.S)
+    document.write_text(text + (others[0] if others else ""))  # the sections of other scripts stay
     print(text)
 
 

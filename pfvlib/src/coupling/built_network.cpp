@@ -77,6 +77,24 @@ Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::Ve
   return pressures;
 }
 
+CellExtents cell_extents(const PoreNetwork& network, const Spheres& spheres, int axis) {
+  CellExtents extents;
+  for (const auto& cell : network.cell_vertices) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vertex vertex : cell) {
+      if (is_wall(vertex) && wall_number(vertex) / 2 != axis) continue;
+      const double x = !is_wall(vertex)             ? spheres.centres(axis, vertex)
+                       : wall_number(vertex) % 2 != 0 ? spheres.edges[axis]
+                                                      : 0.0;
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    extents.low.push_back(low);
+    extents.high.push_back(high);
+  }
+  return extents;
+}
+
 std::vector<double> strain_volumes(const PoreNetwork& network, const Throats& throats,
                                    const Spheres& spheres) {
   std::vector<double> smallest(network.pores(), std::numeric_limits<double>::infinity());

@@ -12,6 +12,7 @@
 #include "solve/linear_solver.hpp"
 #include "solve/pressure_system.hpp"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,6 +25,11 @@ struct ImplicitFactor {
   ImplicitSystem system;
   std::unique_ptr<LinearSolver> solver;
   Eigen::RowVectorXd yielding;  ///< dt/m of the grains and the six faces whose A is in the factor
+};
+
+/// From where to where each cell reaches along an axis, m.
+struct CellExtents {
+  std::vector<double> low, high;
 };
 
 /// All that is derived from one packing and kept until the next triangulation. What is optional is
@@ -46,6 +52,7 @@ struct BuiltNetwork {
   std::optional<ForceMatrix> pressure_force_matrix;
   std::optional<SurfacePressure> surface_pressure;
   std::optional<SolidUnion> solid;
+  std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis
   std::optional<double> time_step_limit;  ///< for `limit_masses`
   Eigen::VectorXd limit_masses;           ///< of the spheres of the packing and the six faces
   std::optional<ImplicitFactor> implicit;
@@ -61,6 +68,8 @@ Eigen::Matrix3Xd forces_with_faces(const BuiltNetwork& built, const Eigen::Vecto
 /// Pressures (Pa) that sources (m³/s, one entry a pore) cause on the kept factor where every imposed
 /// pressure is 0.
 Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources);
+
+CellExtents cell_extents(const PoreNetwork& network, const Spheres& spheres, int axis);
 
 /// Fluid volume of a pore, but at least 1 % of its smallest sphere: about a tenth of what a pore
 /// between such spheres holds. Without a bound a nearly empty pore would ask for a new network at

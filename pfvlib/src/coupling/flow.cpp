@@ -6,9 +6,10 @@
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
+#include <optional>
+#include <vector>
 
 namespace pfv {
 
@@ -170,22 +171,15 @@ double Flow::pressure_at(const Eigen::Vector3d& place) const {
 double Flow::plane_pressure(int axis, double position) const {
   data_->require_result();
   const BuiltNetwork& built = *data_->built;
-  const Spheres& spheres = built.vertices;
   const double relative = position - built.network.origin[axis];
-  const auto coordinate = [&](Vertex vertex) {
-    return wall_number(vertex) % 2 ? spheres.edges[axis] : 0.0;
-  };
-  std::set<int> cut;
-  for (int c = 0; c < built.network.cells(); ++c) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vertex vertex : built.network.cell_vertices[c]) {
-      if (is_wall(vertex) && wall_number(vertex) / 2 != axis) continue;
-      const double x = is_wall(vertex) ? coordinate(vertex) : spheres.centres(axis, vertex);
-      low = std::min(low, x);
-      high = std::max(high, x);
-    }
-    if (low <= relative && relative <= high) cut.insert(built.network.cell_pore[c]);
-  }
+  std::optional<CellExtents>& extents = data_->built->cell_extents[axis];
+  if (!extents) extents = cell_extents(built.network, built.vertices, axis);
+  std::vector<int> cut;
+  for (int c = 0; c < built.network.cells(); ++c)
+    if (extents->low[c] <= relative && relative <= extents->high[c])
+      cut.push_back(built.network.cell_pore[c]);
+  std::sort(cut.begin(), cut.end());
+  cut.erase(std::unique(cut.begin(), cut.end()), cut.end());
   if (cut.empty())
     throw InputError("the plane at " + std::to_string(position) + " m cuts no pore");
   double sum = 0.0;
