@@ -82,7 +82,8 @@ def main():
                      + " | ".join(str(counts.get(key, "–")) for key in COUNTS) + " |\n")
     number, special = libraries(BUILD / "bin/pfv")
     text += (f"\n`pfv` links {number} shared libraries, among them of VTK, MUMPS, LIGGGHTS and MPI: "
-             f"{', '.join(special) or 'none'}.\n")
+             f"{', '.join(special) or 'none'}"
+             " (what Debian's Amesos2 itself depends on).\n")
     document = ROOT / "doc/benchmarks.md"
     before, _, after = document.read_text().partition(HEADING)
     rest = after.find("\n## ")
