@@ -242,6 +242,7 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "couple_every") settings.couple_every = words.count("the number of steps");
   else if (keyword == "coupling") settings.coupling = words.coupling();
   else if (keyword == "time_step_check") settings.time_step_check = words.yes_or_no();
+  else if (keyword == "shear_viscous") settings.options.shear_viscous = words.yes_or_no();
   else if (keyword == "conductance")
     settings.options.conductance = pfv::conductance_law_named(words.word("the law's name"));
   else if (keyword == "solver")
@@ -259,8 +260,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
     throw pfv::InputError("unknown keyword '" + keyword +
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
                           "pressure_profile, retriangulate, couple_every, coupling, "
-                          "time_step_check, conductance, solver, tolerance, precision, threads, "
-                          "output, profile and sensors");
+                          "time_step_check, conductance, shear_viscous, solver, tolerance, "
+                          "precision, threads, output, profile and sensors");
 }
 
 /// A profile makes its face one of imposed pressure, which a face with another boundary is not.

@@ -2,6 +2,7 @@
 #include "result_files.h"
 
 #include "pfv/error.hpp"
+#include "pfv/flow.hpp"
 #include "pfv/io.hpp"
 
 #include <cstdlib>
@@ -119,7 +120,7 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
     return stem + "_grains_" + std::to_string(s) + ".vtu";
   };
   flow.write_fields(fluid(base, step));
-  pfv::write_spheres(grains(base, step), packing, flow.forces(), {displacements(packing)});
+  pfv::write_spheres(grains(base, step), packing, flow.forces(), sphere_fields(flow, packing));
   written_.push_back({step, flow.time()});
 
   std::vector<pfv::CollectionEntry> entries;
@@ -139,6 +140,17 @@ Eigen::Matrix3Xd PfvResultFiles::displacements(const pfv::Packing& packing) {
     moved.col(k) = place - first_places_.try_emplace(packing.ids[k], place).first->second;
   }
   return moved;
+}
+
+/// Velocities and stresses where the model has pores.
+pfv::SphereFields PfvResultFiles::sphere_fields(const pfv::FlowModel& flow,
+                                                const pfv::Packing& packing) {
+  pfv::SphereFields fields{displacements(packing), {}, {}};
+  if (const auto* pores = dynamic_cast<const pfv::Flow*>(&flow)) {
+    fields.fluid_velocity = pores->sphere_velocities();
+    fields.fluid_stress = pores->sphere_stresses();
+  }
+  return fields;
 }
 
 std::vector<double> PfvResultFiles::profile_row(const pfv::FlowModel& flow) const {

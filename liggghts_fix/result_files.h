@@ -6,6 +6,7 @@
 #include "arguments.h"
 
 #include "pfv/flow_model.hpp"
+#include "pfv/io.hpp"
 
 #include <cstdint>
 #include <fstream>
@@ -69,6 +70,7 @@ class PfvResultFiles {
   void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, std::int64_t step);
   std::vector<double> profile_row(const pfv::FlowModel& flow) const;
   std::vector<double> sensor_row(const pfv::FlowModel& flow) const;
+  pfv::SphereFields sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing);
   Eigen::Matrix3Xd displacements(const pfv::Packing& packing);
 
   std::optional<PfvFieldOutput> fields_;

@@ -139,11 +139,11 @@ def draw_strain(run, times):
 
 
 def still_until(run, tolerance):
-    """Amplitude up to which the sensors stay within tolerance x A of the harmonic pressures (rms)
-    after the first 50 Pa, whose relative errors say nothing."""
+    """Amplitude up to which the sensors stay within tolerance x A of the harmonic pressures (rms), after
+    the first 100 Pa, in which what is left of the bed's own consolidation drains."""
     amplitude = np.interp(run.time, run.state["time"], run.state["amplitude"])
     error = np.sqrt(((run.p - run.still_pressure())**2).mean(axis=(1, 2)))
-    beyond = np.nonzero((amplitude > 50.0) & (error > tolerance * amplitude))[0]
+    beyond = np.nonzero((amplitude > 100.0) & (error > tolerance * amplitude))[0]
     return float(amplitude[beyond[0]]) if len(beyond) else float(amplitude[-1])
 
 

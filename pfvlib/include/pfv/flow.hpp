@@ -12,6 +12,14 @@ namespace pfv {
 
 struct FlowData;
 
+/// Of the fluid between two planes, weighted with the pores' volume.
+struct SliceMeans {
+  int pores = 0;
+  double volume = 0.0;                                   ///< of the fluid in these pores, m³
+  double pressure = 0.0;                                 ///< Pa
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< relative to the grains, m/s
+};
+
 /// Flow through the pores of a moving packing: the one owner of state, who alone knows what is stale.
 ///
 ///     pfv::Flow flow(box, fluid, options);
@@ -84,6 +92,21 @@ class Flow final : public FlowModel {
   /// Spheres whose power cell is empty.
   std::vector<int> hidden() const override;
   std::int64_t hidden_or_outside() const override;
+
+  /// Mean velocity of the fluid in each pore relative to the grains, m/s: 3 x pores. Cost: as faces() and a
+  /// pass over the facets, like all below down to slice_means.
+  Eigen::Matrix3Xd pore_velocities() const;
+  /// Of the pores around each sphere, weighted with their volume and solid angle, m/s: 3 x N; 0 for
+  /// hidden and left-out spheres.
+  Eigen::Matrix3Xd sphere_velocities() const;
+  /// Mean stress (Pa, tension positive) that the fluid's tractions cause in each sphere, rows xx, yy, zz,
+  /// xy, xz, yz: in an even pressure p it is -p, -p, -p, 0, 0, 0. 6 x N; 0 for hidden and left-out ones.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_stresses() const;
+  /// Flow rate (m³/s, positive along the axis) between the pores on either side of a plane. In a steady flow
+  /// with sealed sides it is the same for every plane. Throws InputError for a plane outside the box.
+  double plane_flux(int axis, double position) const;
+  /// Means over the pores with their centre in a slice. Throws InputError where there is none.
+  SliceMeans slice_means(int axis, double lower, double upper) const;
 
   /// The network in use: cells refer to spheres by their column in the packing it was built from.
   const PoreNetwork& network() const;

@@ -31,7 +31,9 @@ void write_network(const std::string& path, const Flow& flow);
 
 /// Further fields of spheres, one column a sphere of the packing; an empty one is not written.
 struct SphereFields {
-  Eigen::Matrix3Xd displacement;  ///< m
+  Eigen::Matrix3Xd displacement;    ///< m
+  Eigen::Matrix3Xd fluid_velocity;  ///< m/s
+  Eigen::Matrix<double, 6, Eigen::Dynamic> fluid_stress;  ///< Pa: xx, yy, zz, xy, xz, yz
 };
 
 /// Spheres as points of a .vtu: id, radius, force, velocity, mean pressure around each and `more`.

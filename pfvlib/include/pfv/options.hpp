@@ -53,6 +53,8 @@ struct Options {
   bool split_forces = false;  ///< also the pressure and the viscous part of each sphere's force
   bool buoyancy = true;       ///< add -density V gravity to each sphere where there is gravity
   bool sphere_pressure = false;  ///< also the mean pressure around each sphere
+  bool shear_viscous = false;  ///< add the shear viscous forces of sliding neighbours (Catalano 2012 eqs.
+                               ///< 6.29-6.30); explicit and staged steps, no periodic axes
 };
 
 /// Throws InputError for settings that are unknown or contradict each other.

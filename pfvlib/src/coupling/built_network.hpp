@@ -5,6 +5,7 @@
 #include "network/pore_boundaries.hpp"
 #include "physics/conductances.hpp"
 #include "physics/force_matrix.hpp"
+#include "physics/shear_forces.hpp"
 #include "physics/solid_union.hpp"
 #include "physics/throats.hpp"
 #include "physics/volume_rates.hpp"
@@ -51,6 +52,7 @@ struct BuiltNetwork {
   std::optional<ForceMatrix> force_matrix;
   std::optional<ForceMatrix> pressure_force_matrix;
   std::optional<SurfacePressure> surface_pressure;
+  std::optional<std::vector<ShearPair>> shear_pairs;
   std::optional<SolidUnion> solid;
   std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis
   std::optional<double> time_step_limit;  ///< for `limit_masses`

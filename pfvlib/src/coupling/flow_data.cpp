@@ -30,6 +30,8 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     assemble_and_factor(step);
     stages = 1;
     force_lag.resize(0);
+    mean_motion.resize(3, 0);
+    refuse_shear_forces(coupling);
     const double at_time = advance ? time + step : time;
     if (coupling == Coupling::implicit) {
       run_implicit(packing, step, at_time, *grains);
@@ -253,6 +255,8 @@ void FlowData::make_force_matrices() {
     if (options.split_forces)
       built->pressure_force_matrix =
           force_matrix(built->network, built->throats, active, {true, false});
+    if (options.shear_viscous)
+      built->shear_pairs = shear_pairs(built->network, built->throats, built->vertices);
     if (options.sphere_pressure)
       built->surface_pressure = surface_pressure(built->network, built->vertices, active);
   }
@@ -289,6 +293,7 @@ void FlowData::compute_forces(const Packing& packing) {
         multiply(built->implicit->energy_forces, relative_pressures - force_lag).leftCols(active);
   spread(fluid_forces, forces.total);
   if (options.split_forces) forces.pressure = forces.total - forces.viscous;
+  if (options.shear_viscous) add_shear_forces(packing);
   if (options.buoyancy && !fluid.gravity.isZero(0.0)) {
     for (Eigen::Index i = 0; i < active; ++i) {
       const Eigen::Vector3d lift = buoyancy_of(static_cast<int>(i));

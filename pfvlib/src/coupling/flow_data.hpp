@@ -87,6 +87,10 @@ struct FlowData {
   void make_force_matrices();
   void multiply_forces(const ForceMatrix& matrix, ForceParts parts, Eigen::Matrix3Xd& result);
   void compute_forces(const Packing& packing);
+  void refuse_shear_forces(Coupling coupling) const;
+  void add_shear_forces(const Packing& packing);
+  /// 3 x (active spheres + 6): of these velocities of active spheres and faces; none where switched off.
+  Eigen::Matrix3Xd shear_forces_of(const Eigen::Matrix3Xd& motion) const;
   Eigen::Matrix3Xd motion_of(const Packing& packing) const;
   void check_dynamics(const GrainDynamics& grains, const Packing& packing) const;
   Eigen::RowVectorXd yielding(const GrainDynamics& grains, double step) const;
@@ -100,6 +104,7 @@ struct FlowData {
   void add_strain(double step);
 
   Eigen::Matrix3Xd velocities;  ///< of the active spheres
+  Eigen::Matrix3Xd mean_motion;  ///< over a staged step, of active spheres and faces; else empty
   Eigen::VectorXd sources, mean_pressures;
 };
 

@@ -221,8 +221,10 @@ void check(const Options& options) {
   if (options.threads < 1 || options.threads > 64)
     throw InputError("the number of threads is " + std::to_string(options.threads) +
                      ": give 1 to 64");
-  if (!options.forces && (options.split_forces || options.sphere_pressure))
-    throw InputError("split forces and sphere pressures need forces: switch those on too");
+  if (!options.forces &&
+      (options.split_forces || options.sphere_pressure || options.shear_viscous))
+    throw InputError("split forces, sphere pressures and shear viscous forces need forces: switch those "
+                     "on too");
 }
 
 }  // namespace pfv

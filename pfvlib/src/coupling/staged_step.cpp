@@ -38,7 +38,7 @@ double FlowData::time_step_limit(const Eigen::VectorXd& masses,
           (u.reshaped(3, spheres + 6).array().rowwise() * root.array()).matrix();
       const Eigen::VectorXd p = homogeneous_pressures(
           *built, volume_rates(*built->volume_rate_matrix, v));
-      Eigen::Matrix3Xd force = forces_with_faces(*built, p);
+      Eigen::Matrix3Xd force = forces_with_faces(*built, p) - shear_forces_of(v);
       force.array().rowwise() *= root.array();
       for (int face = 0; face < 6; ++face)  // guided along its axis
         for (int axis = 0; axis < 3; ++axis)
@@ -73,25 +73,30 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
   Eigen::VectorXd mean_pressure = Eigen::VectorXd::Zero(built->network.pores());
   Eigen::VectorXd mean_rates = mean_pressure, pressure_before = mean_pressure,
                   rates_before = mean_pressure;
+  mean_motion.setZero(3, start.cols());
+  Eigen::Matrix3Xd motion_before = mean_motion;
   for (const ChebyshevStage& stage : all) {
-    rates_of_motion(now);
+    const Eigen::Matrix3Xd motion = now;
+    rates_of_motion(motion);
     solve_pressures(at_time, *built->solver);
     const Eigen::Matrix3Xd change =
-        ((held + forces_with_faces(*built, relative_pressures)).array().rowwise() *
+        ((held + forces_with_faces(*built, relative_pressures) + shear_forces_of(motion))
+             .array()
+             .rowwise() *
          per_mass.array())
             .matrix();
     Eigen::Matrix3Xd next =
         (1.0 - stage.m - stage.n) * start + stage.m * now + stage.n * before + stage.f * change;
     before = std::move(now);
     now = std::move(next);
-    const auto carry = [&](Eigen::VectorXd& mean, Eigen::VectorXd& last,
-                           const Eigen::VectorXd& value) {
-      Eigen::VectorXd next_mean = stage.m * mean + stage.n * last + stage.f * value;
+    const auto carry = [&](auto& mean, auto& last, const auto& value) {
+      auto next_mean = (stage.m * mean + stage.n * last + stage.f * value).eval();
       last = std::move(mean);
       mean = std::move(next_mean);
     };
     carry(mean_pressure, pressure_before, relative_pressures);
     carry(mean_rates, rates_before, rates);
+    carry(mean_motion, motion_before, motion);
   }
   relative_pressures = mean_pressure;
   rates = mean_rates;

@@ -70,6 +70,8 @@ void add_network_values(VtuFile& file, const Flow& flow) {
   file.begin("PointData");
   file.add("pressure", pressures.data(), p.size());
   file.add("volume", volumes.data(), v.size());
+  const Eigen::Matrix3Xd velocities = flow.pore_velocities();
+  file.add("velocity", velocities.data(), v.size(), 3);
   file.end("PointData");
   const auto add = [&](const char* name, const Numbers& pores, const Numbers& throats) {
     const Numbers values = pores_then_throats(pores, throats);
@@ -103,6 +105,13 @@ void add_sphere_values(VtuFile& file, const Packing& packing, const Forces& forc
   if (forces.total.cols() == n) file.add("force", forces.total.data(), n, 3);
   if (forces.sphere_pressure.size() == n) file.add("pressure", forces.sphere_pressure.data(), n);
   if (more.displacement.cols() == n) file.add("displacement", more.displacement.data(), n, 3);
+  if (more.fluid_velocity.cols() == n)
+    file.add("fluid_velocity", more.fluid_velocity.data(), n, 3);
+  if (more.fluid_stress.cols() == n) {
+    Eigen::Matrix<double, 6, Eigen::Dynamic> in_vtk_order = more.fluid_stress;  // ... xy, yz, xz
+    in_vtk_order.row(4).swap(in_vtk_order.row(5));
+    file.add("fluid_stress", in_vtk_order.data(), n, 6);
+  }
   file.end("PointData");
 }
 

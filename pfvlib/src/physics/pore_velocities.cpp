@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/pore_velocities.hpp"
+
+#include "network/facets.hpp"
+
+#include <algorithm>
+
+namespace pfv {
+
+namespace {
+
+/// A piece of a pore's surface.
+struct Side {
+  int pore;
+  Eigen::Vector3d middle;
+  double area;
+  double outflow;
+};
+
+/// The pieces of the throats; the flow of a throat is spread over its facets by area.
+void add_facets(const PoreNetwork& network, const Spheres& spheres,
+                const std::vector<double>& fluxes, std::vector<Side>& sides) {
+  for (int t = 0; t < network.throats(); ++t) {
+    double total = 0.0;
+    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
+      total += area_vector(network.facet_vertices[f], spheres).norm();
+    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
+      const double area = area_vector(network.facet_vertices[f], spheres).norm();
+      const double flow = total > 0.0 ? fluxes[t] * area / total : 0.0;
+      const Eigen::Vector3d middle = facet_middle(network.facet_vertices[f], spheres);
+      sides.push_back({network.throat_pores[t][0], middle, area, flow});
+      sides.push_back({network.throat_pores[t][1], middle - network.throat_offset(t), area, -flow});
+    }
+  }
+}
+
+/// The pieces on the faces of the box, one a cell and face; what enters through a contact is spread
+/// over its cells by area.
+void add_bases(const PoreNetwork& network, const Spheres& spheres,
+               const PoreBoundaries& boundaries, const std::vector<double>& inflows,
+               std::vector<Side>& sides) {
+  const auto& contacts = boundaries.contacts;
+  std::vector<double> total(contacts.size(), 0.0);
+  const std::size_t first = sides.size();
+  std::vector<std::size_t> contact_of;
+  for (int c = 0; c < network.cells(); ++c)
+    for (int i = 0; i < 4; ++i) {
+      const auto& cell = network.cell_vertices[c];
+      if (!is_wall(cell[i])) continue;
+      const int face = wall_number(cell[i]), axis = face / 2;
+      const auto facet = facet_opposite(cell, i);
+      const double area = std::abs(area_vector(facet, spheres)[axis]);
+      Eigen::Vector3d middle = facet_middle(facet, spheres);
+      middle[axis] = face % 2 ? spheres.edges[axis] : 0.0;
+      const auto found = std::lower_bound(
+          contacts.begin(), contacts.end(), std::pair(network.cell_pore[c], face),
+          [](const PoreBoundaries::Contact& contact, const std::pair<int, int>& wanted) {
+            return std::pair(contact.pore, contact.face) < wanted;
+          });
+      const auto contact = static_cast<std::size_t>(found - contacts.begin());
+      sides.push_back({network.cell_pore[c], middle, area, 0.0});
+      contact_of.push_back(contact);
+      total[contact] += area;
+    }
+  for (std::size_t k = 0; k < contact_of.size(); ++k) {
+    Side& side = sides[first + k];
+    if (total[contact_of[k]] > 0.0)
+      side.outflow = -inflows[contact_of[k]] * side.area / total[contact_of[k]];
+  }
+}
+
+}  // namespace
+
+Eigen::Vector3d facet_middle(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
+  const int a = facet[0];
+  const Eigen::Vector3d start = spheres.centres.col(a), second = spheres.towards(a, facet[1]),
+                        third = spheres.towards(a, facet[2]);
+  if (!is_wall(facet[2])) return start + (second + third) / 3.0;
+  const double height = spheres.distance(a, wall_number(facet[2]));
+  if (is_wall(facet[1]))
+    return start + 0.5 * (spheres.distance(a, wall_number(facet[1])) * second + height * third);
+  // two triangles: both centres and the foot of the second, the first centre and both feet
+  const double other = spheres.distance(facet[1], wall_number(facet[2]));
+  const Eigen::Vector3d first_triangle = (2.0 * second + other * third) / 3.0;
+  const Eigen::Vector3d second_triangle = (second + (other + height) * third) / 3.0;
+  return start + (other * first_triangle + height * second_triangle) / (other + height);
+}
+
+Eigen::Matrix3Xd velocity_integrals(const PoreNetwork& network, const Spheres& spheres,
+                                    const PoreBoundaries& boundaries,
+                                    const std::vector<double>& fluxes,
+                                    const std::vector<double>& inflows) {
+  std::vector<Side> sides;
+  add_facets(network, spheres, fluxes, sides);
+  add_bases(network, spheres, boundaries, inflows, sides);
+  Eigen::Matrix3Xd middle = Eigen::Matrix3Xd::Zero(3, network.pores());
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(network.pores());
+  for (const Side& side : sides) {
+    middle.col(side.pore) += side.area * side.middle;
+    area[side.pore] += side.area;
+  }
+  for (int p = 0; p < network.pores(); ++p)
+    if (area[p] > 0.0) middle.col(p) /= area[p];
+  Eigen::Matrix3Xd integrals = Eigen::Matrix3Xd::Zero(3, network.pores());
+  for (const Side& side : sides)
+    integrals.col(side.pore) += side.outflow * (side.middle - middle.col(side.pore));
+  return integrals;
+}
+
+}  // namespace pfv
