@@ -45,7 +45,8 @@ def prepare(folder, kind, grains, seed, out):
     speed = KINDS[kind]["speed"]
     fall = round((top / speed + 2.0) / (2.5 * contact_step))
     variables = {"N": grains, "r2": radius, "LX": LENGTH, "LY": WIDTH, "top": top,
-                 "mu_fall": KINDS[kind]["mu_fall"], "g": BUOYANT, "drag": mass * BUOYANT / speed, "fall": fall,
+                 "mu_fall": KINDS[kind]["mu_fall"], "g": BUOYANT,
+                 "drag": mass * BUOYANT / speed, "fall": fall,
                  "settle": round(1.5 / (2.5 * contact_step)), "out": out, "name": folder.name,
                  **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(seed))}}
     print(f"{kind} bed of {grains} grains, mean diameter {2 * radius:.4f} m", flush=True)
@@ -82,8 +83,8 @@ def surface(z, radius):
 
 
 def core_porosity(grains, height):
-    """Porosity one mean diameter and more away from walls and surface, where the layers along them do
-    not count: from a grid of points."""
+    """Porosity one mean diameter and more away from walls and surface, where the layers along them
+    do not count: from a grid of points."""
     places, radius = grains[:, 2:5], grains[:, 5]
     margin, step = 2.0 * radius.mean(), radius.mean() / 8.0
     axes = [np.arange(margin, end - margin, step) for end in (LENGTH, WIDTH, height)]

@@ -4,9 +4,9 @@ import numpy as np
 
 
 def vertical_moments(ids, z, radius, contacts, wall_force):
-    """V sigma_zz of each grain: the sum of -x_z F_z over its contacts and walls, compression positive.
-    contacts: rows id, id, ..., vertical force on the first; wall_force: vertical force of horizontal
-    walls on each grain."""
+    """V sigma_zz of each grain: the sum of -x_z F_z over its contacts and walls, compression
+    positive. contacts: rows id, id, ..., vertical force on the first; wall_force: vertical force of
+    horizontal walls on each grain."""
     order = np.argsort(ids)
     moment = radius * abs(wall_force)
     if len(contacts) == 0:

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import shutil
 
 import numpy as np
 
@@ -71,6 +72,10 @@ class Run:
         amplitude = np.interp(self.time, self.state["time"], self.state["amplitude"])
         return amplitude[:, None, None] * shape
 
+    def excess(self):
+        """Mean of all sensors above the pressures of a bed at rest, Pa."""
+        return (self.p - self.still_pressure()).mean(axis=(1, 2))
+
     def snapshots(self):
         """[(time, step)] of the dumps."""
         steps = sorted(int(re.search(r"\.(\d+)\.txt$", path.name)[1]) for path in
@@ -110,7 +115,7 @@ def run(folder, settings, measures, out, amplitude, duration, viscosity=None, to
     every = max(1, steps // records)
     stride = every * max(1, records // snapshots)
     if out != settings["OUT"]:
-        (folder / f"{out}.restart").write_bytes((folder / f"{settings['OUT']}.restart").read_bytes())
+        shutil.copy(folder / f"{settings['OUT']}.restart", folder / f"{out}.restart")
     clear(folder, out)
     variables = {"r2": bed.mean_radius(grains), "LX": bed.LENGTH, "LY": bed.WIDTH,
                  "viscosity": viscosity, "time_step": step, "steps": steps, "every": every,

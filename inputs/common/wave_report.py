@@ -27,8 +27,8 @@ def displacements(run, step):
 
 
 def strain_deviator(grains, moved):
-    """Second invariant sqrt(2/3 e:e) of the deviator of each grain's strain (eq. 2.21): the gradient
-    that fits the displacements of the neighbours within 1.6 mean diameters best."""
+    """sqrt(2/3 e:e) of the deviator e of each grain's strain (eq. 2.21): the gradient that fits the
+    displacements of the neighbours within 1.6 mean diameters best."""
     places, reach = grains[:, 2:5], 3.2 * grains[:, 5].mean()
     invariants = np.zeros(len(grains))
     for k, place in enumerate(places):
@@ -44,7 +44,7 @@ def strain_deviator(grains, moved):
 
 
 def layer_porosity(run, grains):
-    """Between a tenth and seven tenths of the bed's height at rest, layers along the walls included."""
+    """Between a tenth and seven tenths of the bed's height at rest, wall layers included."""
     height = run.measures["height"]
     return bed.porosity(grains[:, 4], grains[:, 5], 0.1 * height, 0.7 * height)
 
@@ -112,7 +112,8 @@ def draw_stress(run, times):
         sigma = contact_stress.slices(grains[:, 4], grains[:, 5], moments, edges,
                                       bed.LENGTH * bed.WIDTH)
         row = int(np.argmin(abs(run.time - time)))
-        place.plot(run.p[row, len(wave.VERTICALS) // 2] / 1e3, run.heights, "o-", ms=3, label="p, v3")
+        place.plot(run.p[row, len(wave.VERTICALS) // 2] / 1e3, run.heights, "o-", ms=3,
+                   label="p, v3")
         place.plot(sigma / 1e3, (edges[1:] + edges[:-1]) / 2, "s-", ms=3, label="σ'")
         place.set(title=f"t = {time:.1f} s", xlabel="kPa")
     axes[0].set(ylabel="z, m")
@@ -139,8 +140,8 @@ def draw_strain(run, times):
 
 
 def still_until(run, tolerance):
-    """Amplitude up to which the sensors stay within tolerance x A of the harmonic pressures (rms), after
-    the first 100 Pa, in which what is left of the bed's own consolidation drains."""
+    """Amplitude up to which the sensors stay within tolerance x A of the harmonic pressures (rms),
+    after the first 100 Pa, in which what is left of the bed's own consolidation drains."""
     amplitude = np.interp(run.time, run.state["time"], run.state["amplitude"])
     error = np.sqrt(((run.p - run.still_pressure())**2).mean(axis=(1, 2)))
     beyond = np.nonzero((amplitude > 100.0) & (error > tolerance * amplitude))[0]

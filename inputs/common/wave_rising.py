@@ -30,6 +30,7 @@ def describe(run, kind, settings):
             "still_until": wave_report.still_until(run, 0.2),
             "unstable_at": wave_report.unstable_at(run),
             "liquefied_most": float(run.liquefied().max()),
+            "excess_end": float(run.excess()[-20:].mean()),
             "amplitude_end": float(run.state["amplitude"][-1]),
             "thesis": thesis, "networks": int(run.state["retriangulations"][-1]),
             "mass": float(abs(run.state["mass"]).max()),
@@ -41,12 +42,15 @@ def print_table(d, kind, settings):
           f"{'a plane' if settings['TOP'] == 'plane' else 'the highest grain'}")
     print(f"  porosity away from walls    {d['core_porosity']:.3f}   thesis "
           f"{d['thesis']['porosity']:.3f}")
-    print(f"  pressures harmonic up to    {number(d['still_until'])}   (sensors within 20 % of A, rms)")
+    print(f"  pressures harmonic up to    {number(d['still_until'])}   (sensors within 20 % of A, "
+          "rms)")
     print(f"  grains run away at          {number(d['unstable_at'])}   thesis about "
           f"{d['thesis']['amplitude']:.0f} Pa")
     print(f"  largest ∇H/i_c, v3          {d['liquefied_most']:.2f}   (1: liquefied)")
     print(f"  networks {d['networks']}, viscosity {d['viscosity']:.4g} Pa s, time step "
-          f"{d['time_step']:.3g} s (explicit limit {d['time_step_limit']:.3g} s), CPU {d['cpu']:.0f} s")
+          f"{d['time_step']:.3g} s (explicit limit {d['time_step_limit']:.3g} s)")
+    print(f"  excess pressure at the end  {d['excess_end']:.0f} Pa, mean of the sensors; CPU "
+          f"{d['cpu']:.0f} s")
 
 
 def work(folder, kind, words):
@@ -67,8 +71,8 @@ def work(folder, kind, words):
     checks = [("the fluid's own force balance, largest", d["balance"], "<= 1e-10",
                d["balance"] <= 1e-10),
               ("the fluid's mass balance, largest", d["mass"], "<= 1e-9", d["mass"] <= 1e-9)]
-    # The first hundred pascals move no grain: the bed is one at rest, and the harmonic solution holds,
-    # as far as a bed of a few grains of depth can follow it.
+    # The first hundred pascals move no grain: the bed is one at rest, and the harmonic solution
+    # holds, as far as a bed of a few grains of depth can follow it.
     if settings["N"] >= 300:
         checks.append(("pressures harmonic (within 20 % of A, rms) up to, Pa", d["still_until"],
                        ">= 150", d["still_until"] >= min(150.0, 0.99 * d["amplitude_end"])))

@@ -24,7 +24,7 @@ import fields
 import scene
 
 KEYS = {
-    "N": (int, 500, "grains"),
+    "N": (int, 400, "grains"),
     "SEED": (int, 1, "sample number, 1, 2, ..."),
     "VISCOSITY": (float, 10.0, "Pa s"),
     "END": (float, 8.0, "duration at 10 Pa s, s; goes with the viscosity"),

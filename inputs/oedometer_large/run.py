@@ -41,7 +41,7 @@ def measure(settings):
 
 
 def compare(records, C_v, height):
-    """Differences of p(H/2) and U from Terzaghi with one consolidation coefficient, and the times."""
+    """Differences of p(H/2) and U from Terzaghi with one consolidation coefficient."""
     f = records.figures
     factor = C_v / f["C_v"] * (f["height"] / height) ** 2
     times = np.linspace(analyse.EARLY, analyse.LATE, 1000)
@@ -97,8 +97,9 @@ def work(words):
           f"thesis {100 * THESIS['strain']:.2f} %")
     print(f"  permeability      {f['K']:.3e} -> {f['K_loaded']:.3e} m2, "
           f"{100 * (f['K_loaded'] / f['K'] - 1):+.1f} %   thesis {100 * THESIS['K']:+.1f} %")
-    print(f"  modulus           {f['E_initial'] / 1e6:.3f} MPa (at 5 kPa) -> {f['E_oed'] / 1e6:.3f} MPa"
-          f", {100 * (f['E_oed'] / f['E_initial'] - 1):+.1f} %   thesis {100 * THESIS['E']:+.1f} %")
+    print(f"  modulus           {f['E_initial'] / 1e6:.3f} MPa (at 5 kPa) -> "
+          f"{f['E_oed'] / 1e6:.3f} MPa, {100 * (f['E_oed'] / f['E_initial'] - 1):+.1f} %   "
+          f"thesis {100 * THESIS['E']:+.1f} %")
     print("                    p(H/2) rms   U rms   mean lag of p(H/2)")
     for name, case in (("initial C_v", initial), ("final C_v", final)):
         print(f"  {name:<16s} {100 * case['p_rms']:9.2f} % {100 * case['U_rms']:6.2f} % "

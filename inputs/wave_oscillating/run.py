@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which oscillating waves liquefy a loose bed: a map of amplitudes and periods (thesis section 6.4).
+"""Which oscillating waves liquefy a loose bed: amplitudes and periods (thesis section 6.4).
 
     run.py [KEY=VALUE...]      called by ./run.sh wave_oscillating [KEY=VALUE...]
 """
@@ -21,11 +21,11 @@ import scene
 import wave
 
 KEYS = {
-    "N": (int, 500, "grains"),
+    "N": (int, 300, "grains"),
     "SEED": (int, 1, "sample number, 1, 2, ..."),
-    "AMPLITUDES": (str, "50,150,400,800", "Pa, with commas"),
-    "PERIODS": (str, "0.5,1,2", "s, with commas"),
-    "END": (float, 6.0, "duration of each run, s"),
+    "AMPLITUDES": (str, "200,600,1200", "Pa, with commas"),
+    "PERIODS": (str, "0.5,2", "s, with commas"),
+    "END": (float, 3.0, "duration of each run, s"),
     "TOP": (str, "plane", "plane or extent: where the flow box ends"),
     "OUT": (str, "post/sample", "where results go, without ending"),
 }
@@ -43,8 +43,8 @@ def numbers(settings, key):
 
 
 def consolidation_time(settings, measures):
-    """t_c = H² γ_w ε_c / (K_d σ_c) (eq. 6.31) with ε_c = 0.01 and σ_c the weight of the bed: the fluid's
-    weight cancels when K_d = K γ_w / μ."""
+    """t_c = H² γ_w ε_c / (K_d σ_c) (eq. 6.31) with ε_c = 0.01 and σ_c the weight of the bed; γ_w
+    cancels, for K_d = K γ_w / μ."""
     box = (0.0, bed.LENGTH, 0.0, bed.WIDTH, 0.0, measures["top"])
     K = scene.pfv_solve(SCENE, f"{settings['OUT']}.dump", box, 1.0, f"{settings['OUT']}_K.json",
                         "--wall", "symmetry", "--face", "zlo:pressure=1",
@@ -92,15 +92,16 @@ def work(words):
             out = f"{settings['OUT']}_{amplitude:g}_{period:g}"
             run = wave.run(SCENE, settings, measures, out,
                            f"{amplitude:g}*sin({2 * math.pi / period:.12g}*v_t)", settings["END"],
-                           top=settings["TOP"], records=max(400, round(40 * settings["END"] / period)),
-                           snapshots=5)
+                           top=settings["TOP"], snapshots=5,
+                           records=max(400, round(40 * settings["END"] / period)))
             rows.append({"amplitude": amplitude, "period": period, "cpu": run.figures["cpu"],
                          "built_up": float(mean_over_period(run, period).max()),
                          "most": float(run.liquefied().max()),
                          "settlement": float(run.state["mean_z"][0] - run.state["mean_z"][-1]),
                          "balance": float(abs(run.state["balance"]).max())})
     print(f"\nOscillating wave on a loose bed of {settings['N']} grains, porosity "
-          f"{measures['core_porosity']:.3f}; t_c = {consolidation:.2f} s (eq. 6.31; thesis 10 s)")
+          f"{measures['core_porosity']:.3f}")
+    print(f"  t_c = {consolidation:.2f} s (eq. 6.31; thesis 10 s)")
     print("  largest ∇H/i_c along v3, mean over a period (1: liquefied)")
     print("  period, s  " + "".join(f"{a:10.0f} Pa" for a in amplitudes))
     for period in periods:
@@ -108,13 +109,14 @@ def work(words):
         print(f"  {period:9.2f}  " + "".join(f"{row['built_up']:13.2f}" for row in line))
     draw(rows, settings, consolidation, SCENE / settings["OUT"])
     balance = max(row["balance"] for row in rows)
-    checks = [("the fluid's own force balance, largest", balance, "<= 1e-10", balance <= 1e-10)]
+    # relative to the largest pressure, which passes through zero with the wave
+    checks = [("the fluid's own force balance, largest", balance, "<= 1e-9", balance <= 1e-9)]
     low = max(row["built_up"] for row in rows if row["amplitude"] == amplitudes[0])
     checks.append((f"{amplitudes[0]:g} Pa does not liquefy: largest ∇H/i_c", low, f"< {LIQUEFIED}",
                    low < LIQUEFIED))
     if len(amplitudes) > 1 and settings["END"] >= 2.0:
         high = max(row["built_up"] for row in rows if row["amplitude"] == amplitudes[-1])
-        checks.append(("largest ∇H/i_c, highest over lowest amplitude", high / max(low, 1e-3), "> 1",
+        checks.append(("∇H/i_c, highest over lowest amplitude", high / max(low, 1e-3), "> 1",
                        high > low))
     return scene.summary(SCENE, settings["OUT"],
                          {**settings, "t_c": consolidation, "runs": rows}, checks)

@@ -52,10 +52,11 @@ class Network(CommandTest):
             self.assertEqual(self.grid.GetCell(k).GetPointId(0), k)
 
     def test_arrays_are_as_long_as_what_they_belong_to(self):
-        self.assertEqual(set(self.point_data), {"pressure", "volume"})
+        self.assertEqual(set(self.point_data), {"pressure", "volume", "velocity"})
         self.assertEqual(set(self.cell_data), {"pressure", "volume", "conductance", "flux"})
-        for values in self.point_data.values():
-            self.assertEqual(values.shape, (self.pores,))
+        for name, values in self.point_data.items():
+            self.assertEqual(values.shape,
+                             (self.pores, 3) if name == "velocity" else (self.pores,))
         for values in self.cell_data.values():
             self.assertEqual(values.shape, (self.pores + self.throats,))
             self.assertTrue(numpy.isfinite(values).all())
