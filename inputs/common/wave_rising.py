@@ -10,7 +10,7 @@ import wave_report
 KEYS = {
     "N": (int, 1000, "grains"),
     "SEED": (int, 1, "sample number, 1, 2, ..."),
-    "RATE": (float, 100.0, "growth of the amplitude, Pa/s"),
+    "RATE": (float, 200.0, "growth of the amplitude, Pa/s"),
     "AMPLITUDE": (float, 2000.0, "amplitude at the end, Pa"),
     "TOP": (str, "plane", "plane or extent: where the flow box ends"),
     "WORDS": (str, "", "more words for fix pfv"),
