@@ -72,8 +72,9 @@ void FixPfv::choose_coupling() {
     throw pfv::InputError(text + obstacle_);
   }
   constexpr double unknown = 100.0;  // steps, before the first one has been seen
-  const double steps =
-      strain_of_a_step_ > 0.0 ? settings_.options.retriangulation_strain / strain_of_a_step_ : unknown;
+  const double steps = strain_of_a_step_ > 0.0
+                           ? settings_.options.retriangulation_strain / strain_of_a_step_
+                           : unknown;
   chosen_ = ratio > 1.0 ? cheaper(ratio, steps, grains_.masses().size())
                         : PfvCoupling::explicit_forces;
 }
@@ -123,8 +124,8 @@ void FixPfv::check_time_step() {
   if (!settings_.time_step_check && !needs_forces()) return;
   const double limit = time_step_limit();
   const double ratio = flow_step() / limit;
-  const auto pistons = std::count_if(pistons_.begin(), pistons_.end(), [](const pfv::Piston& piston) {
-    return std::isfinite(piston.mass);
+  const auto pistons = std::count_if(pistons_.begin(), pistons_.end(), [](const pfv::Piston& one) {
+    return std::isfinite(one.mass);
   });
   char text[400];
   std::snprintf(text, sizeof text,

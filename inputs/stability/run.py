@@ -172,7 +172,8 @@ def accuracy_table(data):
     heights, pressures, *_ = consolidation(data, viscosity, 1e-6, "time_step_check no")
     settled, peak = abs(heights[-1] - heights[0]), max(pressures[1:])
     lines = ["| coupling | time step, s | R | settlement | pressure | pressure, last quarter "
-             "| new networks | CPU / explicit at 0.8 of its limit |", "|---|---|---|---|---|---|---|---|"]
+             "| new networks | CPU / explicit at 0.8 of its limit |",
+             "|---|---|---|---|---|---|---|---|"]
     cases = [("explicit", 4e-6)] + [(coupling, step) for coupling in ("staged", "implicit")
                                     for step in (2e-4, 1e-4, 5e-5, 2.5e-5)]
     explicit_cpu = None
@@ -199,8 +200,8 @@ def phase_seconds(data, viscosity, step, words, steps=20):
 
 
 def cost_table():
-    lines = ["| grains | order and factor: A / G | solve: A / G | order and factor of A, in solves with G |",
-             "|---|---|---|---|"]
+    lines = ["| grains | order and factor: A / G | solve: A / G "
+             "| order and factor of A, in solves with G |", "|---|---|---|---|"]
     for cells in COST_CELLS:
         rng = random.Random(1)
         data = SCENE / "post" / f"cost_{cells}.data"
@@ -248,8 +249,8 @@ def main(words):
     if words not in ([], ["write"]):
         raise SystemExit("stability: use `run.py` or `run.py write`")
     samples = {name: make_sample(name, factor) for name, factor in SAMPLES.items()}
-    tables = {"beyond": beyond_table(samples["dense"]), "accuracy": accuracy_table(samples["dense"]),
-              "costs": cost_table(), "growth": growth_table(samples), "limits": limits_table(samples)}
+    tables = {"beyond": beyond_table(samples["dense"]),
+              "accuracy": accuracy_table(samples["dense"]), "costs": cost_table(), "growth": growth_table(samples), "limits": limits_table(samples)}
     (SCENE / "post" / "tables.json").write_text(json.dumps(tables, indent=1) + "\n")
     if words:
         write_page(tables)

@@ -35,7 +35,7 @@ class Implicit(SettledTest):
             self.assertEqual({row["flow[9]"] for row in rows}, {1.0})
 
     def test_settlement_and_pressure_are_those_of_the_explicit_run_at_its_own_limit(self):
-        """Of first order in the time step: 1.2 % of the settlement and 2 % of the peak pressure were
+        """Of first order in the time step: 0.7 % of the settlement and 2 % of the peak pressure were
         measured, half of it at half of the step."""
         implicit = self.thermo(self.script(self.at_ratio(20, "coupling implicit"),
                                            "thermo 10\nrun 120\n"))
@@ -45,7 +45,7 @@ class Implicit(SettledTest):
         settled = abs(fine[-1]["height"] - start)
         peak = max(row["flow[7]"] for row in fine[1:])
         for row, other in list(zip(implicit, fine))[1:]:
-            self.assertLess(abs(row["height"] - other["height"]), 0.02 * settled)
+            self.assertLess(abs(row["height"] - other["height"]), 0.01 * settled)
             self.assertLess(abs(row["flow[7]"] - other["flow[7]"]), 0.03 * peak)
 
     # pistons
@@ -60,19 +60,20 @@ class Implicit(SettledTest):
                 f"timestep {step!r}\n" + thermo + run)
 
     def test_a_piston_counts_in_the_limit_and_the_limit_is_that_of_liggghts(self):
-        """A light lid on the water: explicit runs below the printed limit come to rest on the load,
-        those above shake."""
+        """A light lid on the water, over four decades of viscosity: explicit runs 5 % below the printed
+        limit come to rest on the load, those 5 % above throw the lid (3 % were measured)."""
         mass = 0.01
         limit = self.thermo(self.piston_script(1.0, mass, "", "run 0\n"))[0]["flow[6]"]
         self.assertLess(limit, 0.3 * self.limit)
-        viscosity = 20 * limit / STEP  # contacts have no say at a step this short
-        bearing = {}
-        for factor in (0.9, 1.1):
-            rows = self.thermo(self.piston_script(viscosity, mass, "time_step_check no",
-                                                  "run 400\n", step=factor * STEP / 20))
-            bearing[factor] = rows[-1]["lid[3]"]
-        self.assertAlmostEqual(bearing[0.9] / LOAD, 1.0, delta=0.02)
-        self.assertGreater(abs(bearing[1.1]), 100 * LOAD)
+        for viscosity in (1e2, 1e4, 1e6):  # contacts have no say at steps this short
+            bearing = {}
+            for factor in (0.95, 1.05):
+                rows = self.thermo(self.piston_script(
+                    viscosity, mass, "time_step_check no retriangulate 1000", "run 600\n",
+                    step=factor * limit / viscosity))
+                bearing[factor] = rows[-1]["lid[3]"]
+            self.assertAlmostEqual(bearing[0.95] / LOAD, 1.0, delta=0.05)
+            self.assertGreater(abs(bearing[1.05]), 100 * LOAD)
 
     def test_staged_and_implicit_bear_the_load_where_the_explicit_coupling_throws_the_lid(self):
         mass = 0.01
