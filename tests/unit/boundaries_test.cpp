@@ -217,4 +217,24 @@ TEST(FluxFaces, WithoutAPoreOfTheirOwnAreRefused) {
   expect_one_line_with(refusal([&] { flow.evaluate(packing.view()); }), "face zlo");
 }
 
+TEST(Boundaries, APatchTakesThePoresOnAllItsBordersAlike) {
+  // touching spheres have their pores on the grid of their corners, which no decimal meets exactly
+  const double step = 0.025;
+  std::vector<support::Sphere> spheres;
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      for (int k = 0; k < 4; ++k)
+        spheres.push_back({(i + 0.5) * step, (j + 0.5) * step, (k + 0.5) * step, 0.5 * step});
+  pfv::Box box;
+  box.upper = {0.2, 0.2, 0.1};
+  box[pfv::Face::zlo].boundary = pfv::Boundary::flux(1.0);
+  box.patches.push_back(
+      {pfv::Face::zhi, {0.075, 0.125, 0.075, 0.125}, pfv::Boundary::pressure(0.0)});
+  pfv::Flow flow(box, pfv::Fluid{});
+  const pfv::PackingArrays packing = support::packing_of(spheres);
+  flow.evaluate(packing.view());
+  const Eigen::Vector3d force = flow.report().force_sum;
+  EXPECT_LT(force.head<2>().norm(), 1e-10 * force[2]);
+}
+
 }  // namespace

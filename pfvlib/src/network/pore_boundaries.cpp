@@ -21,9 +21,11 @@ InFace in_face(const Patch& patch, const PoreNetwork& network, int pore) {
           {place[first], place[second]}};
 }
 
-/// Distance from the pore to the middle of the patch where it lies within, infinite elsewhere.
+/// Borders included, rounding or not: a lattice may have its pores on them.
 bool within(const InFace& p) {
-  return (p.place.array() >= p.lower.array()).all() && (p.place.array() <= p.upper.array()).all();
+  const Eigen::Array2d slack = 1e-9 * (p.upper - p.lower).array();
+  return (p.place.array() >= p.lower.array() - slack).all() &&
+         (p.place.array() <= p.upper.array() + slack).all();
 }
 
 void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
