@@ -219,17 +219,17 @@ TEST(FluxFaces, WithoutAPoreOfTheirOwnAreRefused) {
 
 TEST(Boundaries, APatchTakesThePoresOnAllItsBordersAlike) {
   // touching spheres have their pores on the grid of their corners, which no decimal meets exactly
-  const double step = 0.025;
+  const double step = 0.005;
   std::vector<support::Sphere> spheres;
-  for (int i = 0; i < 8; ++i)
-    for (int j = 0; j < 8; ++j)
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j)
       for (int k = 0; k < 4; ++k)
         spheres.push_back({(i + 0.5) * step, (j + 0.5) * step, (k + 0.5) * step, 0.5 * step});
   pfv::Box box;
-  box.upper = {0.2, 0.2, 0.1};
+  box.upper = {0.1, 0.1, 0.02};
   box[pfv::Face::zlo].boundary = pfv::Boundary::flux(1.0);
   box.patches.push_back(
-      {pfv::Face::zhi, {0.075, 0.125, 0.075, 0.125}, pfv::Boundary::pressure(0.0)});
+      {pfv::Face::zhi, {0.04, 0.06, 0.04, 0.06}, pfv::Boundary::pressure(0.0)});
   pfv::Flow flow(box, pfv::Fluid{});
   const pfv::PackingArrays packing = support::packing_of(spheres);
   flow.evaluate(packing.view());
