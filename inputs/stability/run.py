@@ -250,7 +250,8 @@ def main(words):
         raise SystemExit("stability: use `run.py` or `run.py write`")
     samples = {name: make_sample(name, factor) for name, factor in SAMPLES.items()}
     tables = {"beyond": beyond_table(samples["dense"]),
-              "accuracy": accuracy_table(samples["dense"]), "costs": cost_table(), "growth": growth_table(samples), "limits": limits_table(samples)}
+              "accuracy": accuracy_table(samples["dense"]), "costs": cost_table(),
+              "growth": growth_table(samples), "limits": limits_table(samples)}
     (SCENE / "post" / "tables.json").write_text(json.dumps(tables, indent=1) + "\n")
     if words:
         write_page(tables)
