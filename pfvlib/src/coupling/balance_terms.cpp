@@ -8,11 +8,12 @@
 
 namespace pfv {
 
-double mass_error(const Totals& totals, double volume_rate, double storage_rate) {
+double mass_error(const Totals& totals, double volume_rate, double storage_rate, double could) {
   const double largest =
       std::max({totals.inflow, totals.outflow, std::abs(volume_rate), std::abs(storage_rate)});
   const double scale = largest > 1e-9 * totals.gross ? largest : totals.gross;
   const double net = totals.inflow - totals.outflow - volume_rate - storage_rate;
+  if (scale <= 1e-15 * could) return could > 0.0 ? net / could : 0.0;
   return scale > 0.0 ? net / scale : 0.0;
 }
 

@@ -18,8 +18,10 @@ struct Totals {
 };
 
 /// The net of all fluxes over the largest of them. Where inflow and outflow cancel within each
-/// boundary (a wave on one face) their gross sum takes its place.
-double mass_error(const Totals& totals, double volume_rate, double storage_rate);
+/// boundary (a wave on one face) their gross sum takes its place, and where all of them are round-off
+/// of `could`, what would flow if pressures did not cancel, that does.
+double mass_error(const Totals& totals, double volume_rate, double storage_rate,
+                  double could = 0.0);
 
 /// The axis of the two opposite faces that alone are not sealed, each with one value; else nothing.
 std::optional<int> axis_of_flow(const Box& box);

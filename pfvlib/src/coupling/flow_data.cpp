@@ -24,6 +24,7 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
   const double wall_start = wall_seconds();
   {
     const PhaseClock clock(seconds.total);
+    if (!solved) stale = true;  // after a failure the network may be no longer that of the grains
     solved = false;
     balance_.reset();
     rebuild_if_stale(packing);
@@ -179,7 +180,12 @@ void FlowData::assemble_and_factor(double step) {
       ++counts.order;
     }
     const PhaseClock clock(seconds.factor);
-    built->solver->factor(built->system.matrix);
+    try {
+      built->solver->factor(built->system.matrix);
+    } catch (const SolverError& error) {
+      built->solver.reset();
+      throw SolverError(contrast() + " (" + error.what() + ")");
+    }
     ++counts.factor;
   }
   built->storage_dt = step;
@@ -210,9 +216,10 @@ void FlowData::rates_of(const Eigen::Matrix3Xd& of_grains) {
 void FlowData::impose(double at_time) {
   const auto& pores = built->unknowns.imposed_pores;
   impose_pressures(built->network, built->boundaries, box, at_time, relative_pressures);
-  double sum = 0.0;
-  for (const int pore : pores) sum += relative_pressures[pore];
-  reference = pores.empty() ? 0.0 : sum / static_cast<double>(pores.size());
+  const double first = pores.empty() ? 0.0 : relative_pressures[pores.front()];
+  double sum = 0.0;  // of the differences: where all are equal, the reference is exact
+  for (const int pore : pores) sum += relative_pressures[pore] - first;
+  reference = pores.empty() ? 0.0 : first + sum / static_cast<double>(pores.size());
   for (const int pore : pores) relative_pressures[pore] -= reference;
 }
 

@@ -77,6 +77,7 @@ struct FlowData {
   void build(const Packing& packing);
   void refuse_undetermined(bool moving_now) const;
   void refuse_isolated(const std::vector<Isolated>& held) const;
+  std::string contrast() const;
   void assemble_and_factor(double step);
   void update_rates(const Packing& packing);
   void rates_of(const Eigen::Matrix3Xd& of_grains);

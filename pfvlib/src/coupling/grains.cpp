@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/grains.hpp"
 
+#include "io/number_text.hpp"
 #include "pfv/error.hpp"
 
 #include <algorithm>
@@ -42,6 +43,17 @@ void check_values(const Packing& packing) {
   }
 }
 
+/// Of a sphere some thousand boxes wide only its cap is in the box, as a difference of volumes whose
+/// last digit is already as large as the box's seventh.
+void refuse_giants(const Packing& packing, const Box& box) {
+  const double largest = 1e3 * std::cbrt(box.volume());
+  for (Eigen::Index k = 0; k < packing.size(); ++k)
+    if (packing.radii[k] > largest)
+      throw InputError("sphere " + std::to_string(packing.ids[k]) + ": its radius " +
+                       detail::number_text(packing.radii[k]) +
+                       " m is more than a thousand times the size of the box; is it in metres?");
+}
+
 void refuse_repeated_ids(const Packing& packing) {
   std::vector<std::int64_t> ids(packing.ids.data(), packing.ids.data() + packing.size());
   std::sort(ids.begin(), ids.end());
@@ -72,6 +84,7 @@ bool is_inside(const Packing& packing, Eigen::Index column, const Box& box) {
 ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains outside) {
   check_shapes(packing);
   check_values(packing);
+  refuse_giants(packing, box);
   refuse_repeated_ids(packing);
   if (packing.size() == 0 && outside == OutsideGrains::refuse)
     throw InputError("the packing has no spheres; give at least one");

@@ -16,8 +16,9 @@ struct ActiveGrains {
   Spheres spheres;           ///< the same grains, in coordinates from the box's lower corner
 };
 
-/// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0,
-/// repeated ids, and (OutsideGrains::refuse) a centre that is not inside the box or no grain at all.
+/// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0 or a
+/// thousand times the box, repeated ids, and (OutsideGrains::refuse) a centre that is not inside the
+/// box or no grain at all.
 ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains outside);
 
 /// Cheap tests of each step.

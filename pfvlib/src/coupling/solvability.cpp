@@ -27,13 +27,13 @@ std::string place_of(const BuiltNetwork& built, int pore) {
   return text.str();
 }
 
-/// Spheres around a set of pores, ascending.
+/// Spheres of the packing around a set of pores, ascending.
 std::vector<int> spheres_around(const BuiltNetwork& built, const std::vector<int>& pores) {
   std::vector<int> spheres;
   for (int c = 0; c < built.network.cells(); ++c)
     if (std::binary_search(pores.begin(), pores.end(), built.network.cell_pore[c]))
       for (const Vertex vertex : built.network.cell_vertices[c])
-        if (!is_wall(vertex)) spheres.push_back(vertex);
+        if (!is_wall(vertex)) spheres.push_back(built.network.vertex_sphere[vertex]);
   std::sort(spheres.begin(), spheres.end());
   spheres.erase(std::unique(spheres.begin(), spheres.end()), spheres.end());
   return spheres;
@@ -53,6 +53,33 @@ void FlowData::refuse_undetermined(bool moving_now) const {
     throw InputError("a flux is imposed, the fluid is incompressible, and no face or patch has a "
                      "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
                      "modulus");
+}
+
+/// The factor needs the digits by which what leaves a group of pores differs from what its own throats
+/// could carry: with fewer than sixteen there are none left.
+std::string FlowData::contrast() const {
+  const PoreNetwork& network = built->network;
+  const std::vector<double>& c = built->conductances.value;
+  int weakest = -1, strongest = -1;
+  for (int t = 0; t < network.throats(); ++t) {
+    if (!(c[t] > 0.0)) continue;
+    if (weakest < 0 || c[t] < c[weakest]) weakest = t;
+    if (strongest < 0 || c[t] > c[strongest]) strongest = t;
+  }
+  if (weakest < 0) return {};
+  const auto name = [&](int t) {
+    std::vector<int> spheres;
+    for (const Vertex vertex : network.facet_vertices[network.throat_facets[t]])
+      if (!is_wall(vertex)) spheres.push_back(network.vertex_sphere[vertex]);
+    std::ostringstream text;
+    text << c[t] << " m3/(Pa s) near " << place_of(*built, network.throat_pores[t][0]) << " at "
+         << sphere_list(built->grains.spheres.ids, spheres);
+    return text.str();
+  };
+  return "the conductances of the throats reach from " + name(weakest) + " to " + name(strongest) +
+         (fluid.bulk_modulus ? ", and the fluid stores little in a time step" : "") +
+         ": too far apart for sixteen digits; remove spheres that nearly coincide or close their "
+         "pores" + (fluid.bulk_modulus ? ", or take a shorter time step" : "");
 }
 
 /// A set of pores without any way to a pressure can only be at rest.
@@ -81,7 +108,7 @@ void FlowData::refuse_isolated(const std::vector<Isolated>& held) const {
     throw InputError(
         std::to_string(isolated.pores.size()) + " pore(s) near " +
         place_of(*built, isolated.pores.front()) + " between " +
-        sphere_list(built->vertices.ids, spheres_around(*built, isolated.pores)) +
+        sphere_list(built->grains.spheres.ids, spheres_around(*built, isolated.pores)) +
         " are cut off from every pressure, but " + rate.str() +
         " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk "
         "modulus, or reduce the overlaps");

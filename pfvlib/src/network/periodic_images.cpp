@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace pfv {
 
@@ -15,6 +16,9 @@ namespace {
 /// A pore in units of the spacing may be displaced by this much by rounding and by the choice of the
 /// cell that names its centre.
 constexpr double same_place = 1e-5;
+
+/// What leaves the cell and what comes in may differ by this part of the largest throat.
+constexpr double same_area = 1e-9;
 
 std::array<int, 3> shift_of(const Eigen::Vector3d& place, const Spheres& spheres) {
   std::array<int, 3> shift{0, 0, 0};
@@ -67,8 +71,11 @@ class PoreFinder {
   std::map<std::array<long, 3>, std::vector<int>> bins_;
 };
 
-/// True when no sphere outside the replicated region could reach into the cell's power sphere.
+/// True when no sphere outside the replicated region could reach into the cell's power sphere, nor
+/// stand behind one of its facets where the region ends (only a corner of the box has nothing there).
 bool is_settled(const PoreNetwork& all, const Images& images, const Spheres& spheres, int cell) {
+  for (int i = is_wall(all.cell_vertices[cell][1]) ? 1 : 0; i < 4; ++i)
+    if (all.cell_neighbours[cell][i] < 0) return false;
   const Eigen::Vector3d centre = all.cell_centres.col(cell);
   const int base = all.cell_vertices[cell][0];
   const double radius = images.spheres.radii[base];
@@ -89,6 +96,42 @@ struct Place {
   int pore = -1;
   std::array<int, 3> shift{0, 0, 0};
 };
+
+/// Way from one home pore to an image of another.
+struct Way {
+  int from, to;
+  std::array<int, 3> shift;
+  bool operator<(const Way& other) const {
+    return std::tie(from, to, shift) < std::tie(other.from, other.to, other.shift);
+  }
+  Way back() const { return {to, from, {-shift[0], -shift[1], -shift[2]}}; }
+};
+
+/// True when each throat that leaves the cell comes in again as large on the other side. Where spheres
+/// nearly coincide their images may be joined into pores in different ways.
+bool repeats(const PoreNetwork& all, const Spheres& images, const std::vector<int>& home,
+             const std::vector<Place>& places) {
+  std::map<Way, Eigen::Vector3d> areas;
+  double largest = 0.0;
+  for (int t = 0; t < all.throats(); ++t) {
+    const auto [i, j] = all.throat_pores[t];
+    if (home[i] < 0 && home[j] < 0) continue;
+    Eigen::Vector3d area = Eigen::Vector3d::Zero();
+    for (int f = all.throat_facets[t]; f < all.throat_facets[t + 1]; ++f)
+      area += area_vector(all.facet_vertices[f], images);
+    largest = std::max(largest, area.norm());
+    const auto add = [&](const Way& way, const Eigen::Vector3d& outwards) {
+      areas.emplace(way, Eigen::Vector3d::Zero()).first->second += outwards;
+    };
+    if (home[i] >= 0) add({home[i], places[j].pore, places[j].shift}, area);
+    if (home[j] >= 0) add({home[j], places[i].pore, places[i].shift}, -area);
+  }
+  for (const auto& [way, area] : areas) {
+    const auto back = areas.find(way.back());
+    if (back == areas.end() || (area + back->second).norm() > same_area * largest) return false;
+  }
+  return true;
+}
 
 struct FoldedThroat {
   int throat;  ///< of the full network
@@ -216,6 +259,8 @@ bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, 
   }
   for (int c = 0; c < all.cells(); ++c)
     if (needed[all.cell_pore[c]] && !is_settled(all, images, spheres, c)) return false;
+
+  if (!repeats(all, images.spheres, home, places)) return false;
 
   std::vector<FoldedThroat> throats;
   constexpr std::array<int, 3> here{0, 0, 0};

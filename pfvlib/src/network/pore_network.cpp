@@ -6,6 +6,7 @@
 #include "network/facets.hpp"
 #include "network/periodic_images.hpp"
 #include "network/triangulation.hpp"
+#include "pfv/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -171,6 +172,23 @@ PoreNetwork network_of(const Spheres& spheres, double spacing) {
   return network;
 }
 
+/// An empty ball between images is no wider than the box's diagonal: a margin of twice that never
+/// helps. A slender cell with few spheres would need images without number.
+void refuse_endless_images(const Spheres& spheres, double margin) {
+  const double most_images = 5e4 + 30.0 * spheres.size();
+  double images = spheres.size();
+  for (int axis = 0; axis < 3; ++axis)
+    if (spheres.periodic[axis]) images *= 1.0 + 2.0 * margin / spheres.edges[axis];
+  if (images > most_images)
+    throw InputError("the periodic cell is so slender, its spheres so few or so large, that its "
+                     "network would need more than " +
+                     std::to_string(static_cast<int>(most_images)) +
+                     " images; repeat the packing along the short edges of the cell");
+  if (margin > 2.0 * spheres.edges.norm() + 4.0 * spheres.radii.maxCoeff())
+    throw InputError("the pores of the periodic cell do not repeat: spheres that nearly coincide "
+                     "are triangulated in another way in each image; remove or move the duplicates");
+}
+
 }  // namespace
 
 PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin) {
@@ -183,6 +201,7 @@ PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin) {
   } else {
     double margin = 2.5 * spacing + 2.0 * spheres.radii.maxCoeff();
     for (;; margin *= 1.5) {
+      refuse_endless_images(spheres, margin);
       Images images = replicate(spheres, margin);
       const PoreNetwork all = network_of(images.spheres, spacing);
       if (fold(all, images, spheres, spacing, space.network)) {

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/chebyshev_stages.hpp"
 
+#include "io/number_text.hpp"
+#include "pfv/error.hpp"
+
+#include <string>
+
 namespace pfv {
 
 namespace {
@@ -26,12 +31,15 @@ Chebyshev chebyshev(int degree, double x) {
 /// Half of the damping goes into width: without it contacts with dashpots become unstable.
 constexpr double epsilon = 2.0;
 
+/// More stages than these cost more than the steps they save; a step of this size is a mistake.
+constexpr int most_stages = 2000;
+
 }  // namespace
 
 std::vector<ChebyshevStage> chebyshev_stages(double z) {
   constexpr double explicit_bound = 1.9, margin = 1.05;
   if (z < explicit_bound) return {{1.0, 0.0, 1.0}};
-  for (int s = 2;; ++s) {
+  for (int s = 2; s <= most_stages; ++s) {
     const double w0 = 1.0 + epsilon / (static_cast<double>(s) * s);
     const Chebyshev t = chebyshev(s, w0);
     const double w1 = t.value[s] / t.derivative;
@@ -43,6 +51,10 @@ std::vector<ChebyshevStage> chebyshev_stages(double z) {
     }
     return stages;
   }
+  throw InputError("the time step is " + detail::number_text(0.5 * z) + " times the limit of the explicit "
+                   "coupling: more than " + std::to_string(most_stages) +
+                   " stages would be needed; take a smaller step, or look for grains that are too "
+                   "light for their fluid");
 }
 
 }  // namespace pfv

@@ -83,12 +83,18 @@ double inscribed_radius(const std::array<Vertex, 3>& facet, const Spheres& spher
   return std::isfinite(radius) ? radius : 0.0;
 }
 
+/// The circle that touches three spheres almost in a row is as wide as one likes.
+constexpr double widest_effective_radius = 5.0;  // in facet sizes sqrt(S)
+
 double effective_radius(const PoreNetwork& network, const Throats& throats,
-                        const Spheres& spheres, int t) {
+                        const Spheres& spheres, int t, bool& by_rule) {
   double inscribed = std::numeric_limits<double>::infinity();
   for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
     inscribed = std::min(inscribed, inscribed_radius(network.facet_vertices[f], spheres));
-  return (std::sqrt(throats.fluid_area[t] / pi) + inscribed) / 4.0;
+  const double radius = (std::sqrt(throats.fluid_area[t] / pi) + inscribed) / 4.0;
+  const double widest = widest_effective_radius * std::sqrt(throats.area[t]);
+  by_rule = radius > widest;
+  return std::min(radius, widest);
 }
 
 // ---- open_throat: the constants, and what they were fitted on, stand in conductances.hpp
@@ -254,6 +260,23 @@ double open_throat(const PoreNetwork& network, const Throats& throats, const Sph
                   largest_per_area2 * area * throat.mirrored_area);
 }
 
+/// A throat that carries less than a pore's other throats lose by round-off: as the only way out of a
+/// group of pores it would leave their pressure to chance.
+constexpr double least_of_its_pores = 1e-14;
+
+void close_what_round_off_hides(Conductances& conductances, const PoreNetwork& network) {
+  std::vector<double> sum(network.pores(), 0.0);
+  for (int t = 0; t < network.throats(); ++t)
+    for (const int pore : network.throat_pores[t]) sum[pore] += conductances.value[t];
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    double& c = conductances.value[t];
+    if (c <= 0.0 || c >= least_of_its_pores * std::min(sum[i], sum[j])) continue;
+    c = 0.0;
+    ++conductances.degenerate;
+  }
+}
+
 }  // namespace
 
 Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwork& network,
@@ -266,12 +289,13 @@ Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwor
       continue;
     }
     const double scale = 1.0 / (viscosity * throats.length[t]);
+    bool by_rule = false;
     if (law == ConductanceLaw::effective_radius) {
-      const double radius = effective_radius(network, throats, spheres, t);
+      const double radius = effective_radius(network, throats, spheres, t, by_rule);
+      if (by_rule) ++result.degenerate;
       result.value[t] = 2.0 * pi * std::pow(radius, 4) * scale;
       continue;
     }
-    bool by_rule = false;
     if (law == ConductanceLaw::open_throat) {
       result.value[t] = open_throat(network, throats, spheres, t, by_rule) * scale;
       if (by_rule) ++result.degenerate;
@@ -282,6 +306,7 @@ Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwor
     if (radius > 0.0)
       result.value[t] = alpha * throats.fluid_area[t] * radius * radius * scale;
   }
+  close_what_round_off_hides(result, network);
   return result;
 }
 

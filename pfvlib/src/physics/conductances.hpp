@@ -43,7 +43,8 @@ struct Conductances {
 /// Rules where a law has no meaning, counted as degenerate: a throat whose discs cover it (A^f <=
 /// 1e-12 S) is closed; one with phi <= 0 or gamma <= 0 takes the hydraulic radius of its two whole
 /// pores (open_throat: their porosity too), and is closed where these have none either; R_h is at
-/// most 100 sqrt(S).
+/// most 100 sqrt(S), the effective radius 5 sqrt(S); a throat with less than 1e-14 of what either of its
+/// pores conducts in all is closed.
 Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwork& network,
                           const Throats& throats, const Spheres& spheres);
 

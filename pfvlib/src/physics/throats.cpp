@@ -185,7 +185,8 @@ void add_to_pores(Throats& throats, const PoreNetwork& network, const Halves& ha
 
 void measure_throat(Throats& throats, const PoreNetwork& network,
                     const PoreBoundaries& boundaries, const Spheres& spheres, int t) {
-  double largest = -1.0, discs = 0.0;
+  double discs = 0.0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
     const auto& facet = network.facet_vertices[f];
     const double area = area_vector(facet, spheres).norm();
@@ -198,12 +199,14 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
         discs += throats.facet_disc[f][k] = disc_part(facet, k, spheres, normal, area);
     throats.area[t] += area;
     throats.volume[t] += halves.phi[0] + halves.phi[1];
-    throats.gamma[t] += halves.gamma[0] + halves.gamma[1];
-    if (area > largest) {
-      largest = area;
-      throats.normal.col(t) = normal;
-    }
+    // of the vertices' own sums, so that their shares of the viscous force add up to one
+    for (const double gamma : halves.gamma_of_vertex) throats.gamma[t] += gamma;
+    sum += area * normal;
   }
+  if (network.throat_facets[t + 1] - network.throat_facets[t] == 1 || throats.area[t] == 0.0)
+    throats.normal.col(t) = unit_normal(network.facet_vertices[network.throat_facets[t]], spheres);
+  else
+    throats.normal.col(t) = sum / throats.area[t];
   throats.fluid_area[t] = std::max(0.0, throats.area[t] - discs);
   throats.length[t] = (pore_centre(network, t, 1) - pore_centre(network, t, 0)).norm();
 }

@@ -21,7 +21,9 @@ struct Throats {
                                                    ///< if it is a no-slip wall, m²
 
   // one entry a throat
-  Eigen::Matrix3Xd normal;           ///< from its first pore to its second
+  Eigen::Matrix3Xd normal;           ///< from its first pore to its second: the mean over its pieces,
+                                     ///< shorter than 1 where nearly coincident spheres fold them,
+                                     ///< so that forces balance there too
   std::vector<double> area;          ///< S: polygon, m²
   std::vector<double> fluid_area;    ///< A^f = S - sum of A^k, >= 0, m²
   std::vector<double> length;        ///< L = |P_i P_j|, m
