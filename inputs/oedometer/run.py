@@ -154,7 +154,7 @@ def couple(settings, sample, planned):
                      words=settings["FIX"])
     if settings["FIELDS"]:
         fields_every = max(1, planned["steps"] // settings["FIELDS"])
-        variables["words"] = f"output {fields_every} {out}.pvd"
+        variables["words"] += f" output {fields_every} {out}.pvd"
     first, last = sample["step"], planned["rest_to"] + planned["steps"]
     _, cpu = liggghts(SCENE, "in.oedometer", variables, out + "_coupled",
                       Progress("consolidation", first, last, planned["time_step"]))
