@@ -78,6 +78,15 @@ void FixPfv::print_phases() {
   std::snprintf(line, sizeof line, "residual %.3g  mass error %.3g  force balance error %.3g\n",
                 done.residual, done.mass_error, done.force_balance_error);
   text += line;
+  if (done.permeability && done.permeability_error) {  // only while all grains are at rest
+    std::snprintf(line, sizeof line,
+                  "permeability %.6g m2  estimated error %.2g %%  in degenerate throats %.2g %%\n",
+                  *done.permeability, 100.0 * *done.permeability_error,
+                  100.0 * *done.degenerate_share);
+    text += line;
+    for (const std::string& reason : done.outside_range)
+      text += "WARNING: the permeability's estimated error may not hold: " + reason + "\n";
+  }
   if (!cited_ && !settings_.grid)
     text +=
         "Please cite, for the flow and for its coupling with the grains:\n"

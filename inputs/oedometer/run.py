@@ -75,7 +75,8 @@ def permeability(dump, bottom, height, viscosity, report):
     """Permeability (m2) of a dump with frictionless side walls, as in the coupled run."""
     box = (0.0, SIDE, 0.0, SIDE, bottom, bottom + height)
     return pfv_solve(SCENE, dump, box, viscosity, report, "--wall", "symmetry",
-                     "--face", "zlo:pressure=5000", "--face", "zhi:pressure=0")["permeability"]
+                     "--conductance", "hydraulic_radius", "--face", "zlo:pressure=5000",
+                     "--face", "zhi:pressure=0")["permeability"]
 
 
 def common_variables(settings):

@@ -47,7 +47,8 @@ def consolidation_time(settings, measures):
     cancels, for K_d = K γ_w / μ."""
     box = (0.0, bed.LENGTH, 0.0, bed.WIDTH, 0.0, measures["top"])
     K = scene.pfv_solve(SCENE, f"{settings['OUT']}.dump", box, 1.0, f"{settings['OUT']}_K.json",
-                        "--wall", "symmetry", "--face", "zlo:pressure=1",
+                        "--wall", "symmetry", "--conductance", "hydraulic_radius",
+                        "--face", "zlo:pressure=1",
                         "--face", "zhi:pressure=0")["permeability"]
     height = measures["height"]
     load = bed.FLUID_DENSITY * bed.GRAVITY * measures["critical_gradient"] * height

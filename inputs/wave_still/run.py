@@ -66,8 +66,9 @@ def one_size(grains, settings):
         out, scene.Progress("bed", 0, 12001, 0.0))
     box = (0.0, LENGTH, 0.0, across, 0.0, DEPTH)
     permeability = [scene.pfv_solve(
-        SCENE, f"{out}.dump", box, 1.0, f"{out}_K.json", "--wall", "symmetry", "--face",
-        f"{axis}lo:pressure=1", "--face", f"{axis}hi:pressure=0")["permeability"] for axis in "xz"]
+        SCENE, f"{out}.dump", box, 1.0, f"{out}_K.json", "--wall", "symmetry",
+        "--conductance", "hydraulic_radius", "--face", f"{axis}lo:pressure=1",
+        "--face", f"{axis}hi:pressure=0")["permeability"] for axis in "xz"]
     (_, pores, _), = fields.collection(SCENE / f"{out}.pvd")
     flow = fields.Fields(pores)
     return {"N": grains, "radius": radius, "width": across, "cpu": cpu,

@@ -80,8 +80,11 @@ int threads_of(const SolveArguments& arguments) {
 
 Options options_of(const SolveArguments& arguments) {
   Options options;
-  options.conductance = conductance_law_named(arguments.conductance);
   options.partition = partition_named(arguments.partition);
+  if (arguments.conductance)
+    options.conductance = conductance_law_named(*arguments.conductance);
+  else if (options.partition == Partition::yade)
+    options.conductance = ConductanceLaw::hydraulic_radius;  // YADE's
   options.solver = solver_named(arguments.solver);
   options.ordering = ordering_named(arguments.ordering);
   options.precision = precision_named(arguments.precision);
@@ -207,7 +210,6 @@ void add_fluid_options(CLI::App& command, SolveArguments& arguments) {
 void add_method_options(CLI::App& command, SolveArguments& arguments) {
   const std::string group = "Method";
   const Options defaults;
-  arguments.conductance = name_of(defaults.conductance);
   arguments.partition = name_of(defaults.partition);
   arguments.solver = name_of(defaults.solver);
   arguments.ordering = name_of(defaults.ordering);
@@ -222,8 +224,10 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
                          name_of(DarcyOptions{}.drag) + ")")
       ->option_text("di_felice|kozeny_carman")->group(group);
   command.add_option("--conductance", arguments.conductance,
-                     "conductance law of a throat (default " + arguments.conductance + ")")
-      ->option_text("hydraulic_radius|effective_radius|open_throat")->group(group);
+                     "conductance law of a throat (default " +
+                         std::string(name_of(defaults.conductance)) +
+                         "; with\n--partition yade hydraulic_radius)")
+      ->option_text("open_throat|hydraulic_radius|effective_radius")->group(group);
   command.add_option("--partition", arguments.partition,
                      "geometry of a throat: signed volumes, or YADE's rules to reproduce its\n"
                      "results (default " + arguments.partition + ")")

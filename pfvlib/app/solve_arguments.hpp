@@ -20,10 +20,9 @@ struct SolveArguments {
   std::vector<std::string> box, faces, patches, gravity, periodic, gradient;
   std::string model = "pfv", drag;
   std::vector<std::string> cells;
-  std::string wall = "no_slip", viscosity = "1e-3", density = "1000", conductance, partition, solver,
-      ordering, precision, threads = "1";
-  std::optional<std::string> tolerance;
-  std::optional<std::string> bulk_modulus, time_step, repeat;
+  std::string wall = "no_slip", viscosity = "1e-3", density = "1000", partition, solver, ordering,
+      precision, threads = "1";
+  std::optional<std::string> conductance, tolerance, bulk_modulus, time_step, repeat;
   std::optional<std::string> forces, report, vtk;
 };
 

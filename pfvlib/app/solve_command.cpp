@@ -64,7 +64,8 @@ void warn_of_hidden(const FlowModel& flow, const Packing& packing, std::ostream&
 }
 
 void warn(const SolveRequest& request, const FlowModel& flow, const Packing& packing,
-          const Counts& counts, std::ostream& warnings) {
+          const Report& report, std::ostream& warnings) {
+  const Counts& counts = report.counts;
   warn_of_hidden(flow, packing, warnings);
   if (is_unloaded(request, packing))
     warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
@@ -75,6 +76,8 @@ void warn(const SolveRequest& request, const FlowModel& flow, const Packing& pac
     warnings << "pfv: warning: " << counts.degenerate_throats
              << " throats without positive volume, surface or area: a rule sets their"
                 " conductance\n";
+  for (const std::string& reason : report.outside_range)
+    warnings << "pfv: warning: the permeability's estimated error may not hold: " << reason << '\n';
 }
 
 void write_outputs(const SolveRequest& request, const FlowModel& flow, const Packing& packing,
@@ -84,6 +87,15 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Pac
   if (request.vtk) flow.write_fields(*request.vtk);
 }
 
+/// The tensor stands in the report; without a gradient its error is worth a line all the same.
+void write_permeability(const Report& report, std::ostream& out) {
+  if (report.permeability) out << "permeability " << *report.permeability << " m2, ";
+  if (report.permeability_error)
+    out << "estimated error of the permeability " << std::setprecision(2)
+        << 100.0 * *report.permeability_error << " %, degenerate throats' share of the dissipation "
+        << 100.0 * *report.degenerate_share << " %\n" << std::setprecision(6);
+}
+
 void write_summary(const SolveRequest& request, const Report& report, std::ostream& out) {
   // An output on the same stream must stay what its format says.
   for (const auto& output : {request.forces, request.report, request.vtk})
@@ -91,7 +103,7 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
   out << std::setprecision(6) << report.spheres << " spheres, " << report.pores
       << (request.grid ? " cells, " : " pores, ")
       << report.unknowns << " unknowns, " << report.seconds.total << " s\n";
-  if (report.permeability) out << "permeability " << *report.permeability << " m2, ";
+  write_permeability(report, out);
   out << "inflow " << report.inflow << " m3/s, outflow " << report.outflow << " m3/s\n";
   if (!request.forces && !request.report && !request.vtk)
     for (const Face face : all_faces)
@@ -118,7 +130,7 @@ void solve(const SolveRequest& request, std::ostream& out, std::ostream& warning
   report.seconds.step = step.cpu;
   report.wall_seconds.step = step.wall;
   write_outputs(request, flow, packing, report);
-  warn(request, flow, packing, report.counts, warnings);
+  warn(request, flow, packing, report, warnings);
   write_summary(request, report, out);
 }
 

@@ -54,7 +54,7 @@ TEST(NineSpheres, SymmetryWallsGiveTheStokesPermeabilityWithin5Percent) {
   for (const Row& row : table("stokes_nine_spheres.csv")) {
     if (wall_of(row) != pfv::Wall::symmetry) continue;
     const Solution s = solve(number(row, "d_over_D"), pfv::Wall::symmetry);
-    // measured 0.979, 1.033, 1.021, 0.998, 0.981
+    // measured 0.979, 1.034, 1.033, 1.021, 0.998, 0.981
     EXPECT_NEAR(*s.report.permeability / number(row, "permeability"), 1.0, 0.05)
         << "d/D " << row.at("d_over_D");
   }
@@ -63,7 +63,7 @@ TEST(NineSpheres, SymmetryWallsGiveTheStokesPermeabilityWithin5Percent) {
 // With no-slip walls the law is low: it knows a wall only by its area, and pays no attention to the
 // profile across the wide gap along it (conductance study). Recorded beside the Stokes solution.
 TEST(NineSpheres, NoSlipWallsGiveTheRecordedShareOfTheStokesPermeability) {
-  const std::vector<double> recorded{0.8178, 0.9235, 0.8825, 0.7842, 0.6972};
+  const std::vector<double> recorded{0.8178, 0.9284, 0.9235, 0.8825, 0.7842, 0.6972};
   std::size_t i = 0;
   for (const Row& row : table("stokes_nine_spheres.csv")) {
     if (wall_of(row) != pfv::Wall::no_slip) continue;
@@ -76,7 +76,7 @@ TEST(NineSpheres, NoSlipWallsGiveTheRecordedShareOfTheStokesPermeability) {
 // The paper's effective radius gives 0.39 of the Stokes permeability on average with no-slip walls;
 // ours lies at 0.43-0.47 in this cell, as in the conductance study.
 TEST(NineSpheres, EffectiveRadiusGivesTheRecordedShareOfTheStokesPermeability) {
-  const std::vector<double> recorded{0.4649, 0.4722, 0.4359, 0.4329, 0.4406};
+  const std::vector<double> recorded{0.4649, 0.4934, 0.4722, 0.4359, 0.4329, 0.4406};
   std::size_t i = 0;
   for (const Row& row : table("stokes_nine_spheres.csv")) {
     if (wall_of(row) != pfv::Wall::no_slip) continue;
@@ -88,7 +88,7 @@ TEST(NineSpheres, EffectiveRadiusGivesTheRecordedShareOfTheStokesPermeability) {
 }
 
 // Measured against the Stokes solution in all ten cells: totals of the big spheres 0.0-1.1 % high;
-// their pressure parts 1.0-5.1 % high and viscous parts 3-24 % low (the split, not the sum, depends
+// their pressure parts 1.0-5.1 % high and viscous parts 3.0-24 % low (the split, not the sum, depends
 // on what A^k and A^f take).
 TEST(NineSpheres, ForcesOnTheBigSpheresAreTheStokesForces) {
   for (const Row& row : table("stokes_nine_spheres.csv")) {
@@ -96,24 +96,39 @@ TEST(NineSpheres, ForcesOnTheBigSpheresAreTheStokesForces) {
     for (int k = 0; k < 8; ++k) {
       EXPECT_NEAR(s.forces.total(2, k) / number(row, "big_total"), 1.0, 0.0115);
       EXPECT_NEAR(s.forces.pressure(2, k) / number(row, "big_pressure"), 1.031, 0.0215);
-      EXPECT_NEAR(s.forces.viscous(2, k) / number(row, "big_viscous"), 0.866, 0.103);
+      EXPECT_NEAR(s.forces.viscous(2, k) / number(row, "big_viscous"), 0.866, 0.1045);
     }
   }
 }
 
 // A ninth sphere much smaller than its pore lies within one pressure gradient that the throats
-// around it cannot resolve: 29 % low at d/D = 0.2, within 7.3 % from 0.4 on.
+// around it cannot resolve: 56 % low at d/D = 0.1, 29 % at 0.2, within 7.3 % from 0.4 on.
 TEST(NineSpheres, ForceOnTheSmallSphereIsTheStokesForceFromDOverD04On) {
   for (const Row& row : table("stokes_nine_spheres.csv")) {
     const double d_over_D = number(row, "d_over_D");
     if (d_over_D == 0.0) continue;
     const Solution s = solve(d_over_D, wall_of(row));
     const double ratio = s.forces.total(2, 8) / number(row, "small_total");
-    if (d_over_D < 0.3) {
+    if (d_over_D < 0.15) {
+      EXPECT_NEAR(ratio, 0.4435, 6e-4);
+    } else if (d_over_D < 0.3) {
       EXPECT_NEAR(ratio, 0.7103, 6e-4);
     } else {
       EXPECT_NEAR(ratio, 1.0, 0.0725) << "d/D " << d_over_D;
     }
+  }
+}
+
+// The open-throat law's share for small spheres in big pores: measured 0.954, 0.996, 1.055, 0.995 and
+// 1.003 (no-slip walls), 0.955, 0.997, 1.056, 0.997 and 1.006 (symmetry) for d/D from 0.1 to 0.72.
+TEST(NineSpheres, OpenThroatGivesTheSmallSphereItsStokesForceWithin6PercentDownToDOverD01) {
+  for (const Row& row : table("stokes_nine_spheres.csv")) {
+    const double d_over_D = number(row, "d_over_D");
+    if (d_over_D == 0.0) continue;
+    const Solution s = solve(d_over_D, wall_of(row), pfv::ConductanceLaw::open_throat);
+    EXPECT_NEAR(s.forces.total(2, 8) / number(row, "small_total"), 1.0, 0.057)
+        << "d/D " << d_over_D;
+    EXPECT_LT(s.report.force_balance_error, 1e-14);
   }
 }
 
@@ -150,14 +165,16 @@ TEST(NineSpheres, TotalForceOnTheSolidIsThePressureDifference) {
   }
 }
 
-// Measured 8.7 % low, whatever the ninth sphere.
+// Measured 8.7 % low, whatever the ninth sphere (8.3 % at d/D 0.1, whose one mesh has the wall's share
+// 0.4 % low).
 TEST(NineSpheres, NoSlipWallsTakeTheirStokesShareWithin9Percent) {
   for (const Row& row : table("stokes_nine_spheres.csv")) {
     if (wall_of(row) != pfv::Wall::no_slip) continue;
     const Solution s = solve(number(row, "d_over_D"), pfv::Wall::no_slip);
+    const double recorded = number(row, "d_over_D") == 0.1 ? 0.9166 : 0.9132;
     for (int face = 0; face < 4; ++face)
-      EXPECT_NEAR(s.report.faces[face].force_viscous[2] / number(row, "side_wall_viscous"), 0.9132,
-                  5e-4);
+      EXPECT_NEAR(s.report.faces[face].force_viscous[2] / number(row, "side_wall_viscous"),
+                  recorded, 5e-4);
   }
 }
 

@@ -44,12 +44,12 @@ void expect_nine_spheres(const std::string& wall, const std::vector<double>& rec
   EXPECT_EQ(i, recorded.size());
 }
 
-// Goal: within 10 % at all d/D with both walls. Measured: within 3.2 and 5.7 %.
+// Goal: within 10 % at all d/D with both walls. Measured: within 3.4 and 6.0 %.
 TEST(OpenThroat, NineSpheresBetweenSymmetryWalls) {
-  expect_nine_spheres("symmetry", {0.9790, 0.9681, 0.9702, 0.9822, 0.9801});
+  expect_nine_spheres("symmetry", {0.9790, 0.9664, 0.9681, 0.9702, 0.9822, 0.9801});
 }
 TEST(OpenThroat, NineSpheresBetweenNoSlipWalls) {
-  expect_nine_spheres("no_slip", {0.9667, 0.9433, 0.9450, 0.9690, 0.9607});
+  expect_nine_spheres("no_slip", {0.9667, 0.9402, 0.9433, 0.9450, 0.9690, 0.9607});
 }
 
 // At least as good as the papers' law where that is at its best, to two per cent.

@@ -119,17 +119,21 @@ void triangular_solves(benchmark::State& state) {
   for (auto _ : state) solver->solve(b, x);
 }
 
+ForceMatrix force_matrix_of(const Stages& stages) {
+  return force_matrix(stages.network, stages.throats,
+                      viscous_shares(Options{}.conductance, stages.network, stages.throats,
+                                     stages.spheres),
+                      stages.spheres.size(), {true, true});
+}
+
 void force_matrix_build(benchmark::State& state) {
   const Stages stages(static_cast<int>(state.range(0)));
-  for (auto _ : state)
-    benchmark::DoNotOptimize(
-        force_matrix(stages.network, stages.throats, stages.spheres.size(), {true, true}));
+  for (auto _ : state) benchmark::DoNotOptimize(force_matrix_of(stages));
 }
 
 void forces(benchmark::State& state) {
   const Stages stages(static_cast<int>(state.range(0)));
-  const ForceMatrix matrix =
-      force_matrix(stages.network, stages.throats, stages.spheres.size(), {true, true});
+  const ForceMatrix matrix = force_matrix_of(stages);
   const Eigen::VectorXd p = Eigen::VectorXd::Ones(stages.network.pores());
   for (auto _ : state) benchmark::DoNotOptimize(multiply(matrix, p));
 }

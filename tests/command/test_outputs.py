@@ -34,12 +34,15 @@ class Outputs(CommandTest):
     def test_report_has_the_documented_keys_and_types(self):
         report = self.report(*THROUGH_FLOW)
         self.assertEqual(set(report), {*INTEGERS, *NUMBERS, "version", "model", "permeability",
-                                       "permeability_tensor", "force_sum", "solver", "ordering",
+                                       "permeability_tensor", "permeability_error",
+                                       "degenerate_share", "outside_range", "force_sum", "solver",
+                                       "ordering",
                                        "conductance", "faces", "counts", "seconds", "wall_seconds"})
         self.assertIsNone(report["permeability_tensor"])  # periodic axes only
         for key in INTEGERS:
             self.assertIs(type(report[key]), int, key)
-        for key in (*NUMBERS, "permeability"):
+        self.assertEqual(report["outside_range"], [])
+        for key in (*NUMBERS, "permeability", "permeability_error", "degenerate_share"):
             self.assert_number(report[key])
         for key in ("solver", "ordering", "conductance", "version", "model"):
             self.assertTrue(report[key])
@@ -160,14 +163,14 @@ class Outputs(CommandTest):
 
     def test_without_outputs_a_summary_is_printed(self):
         result = self.solve(*THROUGH_FLOW)
-        for word in ("permeability", "flux", "unknowns", " s\n"):
+        for word in ("permeability", "estimated error", "flux", "unknowns", " s\n"):
             self.assertIn(word, result.stdout)
         self.assertEqual(list(self.folder.iterdir()), [])
 
-    def test_with_outputs_the_summary_has_two_lines_and_nothing_is_left_beside(self):
+    def test_with_outputs_the_summary_has_three_lines_and_nothing_is_left_beside(self):
         result = self.solve("--forces", "f.csv", "--report", "r.json", "--vtk", "n.vtu",
                             *THROUGH_FLOW)
-        self.assertEqual(result.stdout.count("\n"), 2)
+        self.assertEqual(result.stdout.count("\n"), 3)
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
                          ["f.csv", "n.vtu", "r.json"])
 

@@ -9,7 +9,8 @@ WALLS = "".join(
     f"fix w{face} all wall/gran model hooke/stiffness tangential history primitive type 1 "
     f"{face[0]}plane {EDGE if face.endswith('hi') else 0.0}\n" for face in FACES)
 GRAVITY = "fix g all gravity {0} vector 0 0 -1\n"
-OPEN = faces(zlo="pressure 0", zhi="pressure 0") + " density 0"
+# the tests' figures are those of the papers' law
+OPEN = faces(zlo="pressure 0", zhi="pressure 0") + " density 0 conductance hydraulic_radius"
 STEP = 1e-4  # s; contacts are stable to about 6e-4 s
 THERMO = ("compute height all reduce ave z\n"
           "thermo_style custom step ke c_height f_flow f_flow[5] f_flow[6] f_flow[7] f_flow[9]\n"

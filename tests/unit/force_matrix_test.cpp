@@ -22,6 +22,15 @@ Eigen::VectorXd random_pressures(int pores, std::uint64_t seed) {
   return p;
 }
 
+/// With the shares of a law; the papers' unless it is named.
+pfv::ForceMatrix force_matrix_of(
+    const Stages& s, pfv::ForceParts parts = {true, true},
+    pfv::ConductanceLaw law = pfv::ConductanceLaw::hydraulic_radius) {
+  return pfv::force_matrix(s.network, s.throats,
+                           pfv::viscous_shares(law, s.network, s.throats, s.spheres),
+                           s.spheres.size(), parts);
+}
+
 /// Pressure force on the six faces: p times the pore's base, outwards.
 Eigen::Vector3d pressure_on_faces(const Stages& s, const Eigen::VectorXd& p) {
   const auto areas = pfv::base_areas(s.network, s.boundaries, s.spheres);
@@ -38,17 +47,20 @@ TEST(Forces, OfSpheresAndFacesCancelForAnyPressures) {
   for (const auto& packing : {data_packing("packing_500.csv"), random_packing(200, 0.02, 0.08, 3),
                               lattice(Lattice::fcc, 3)}) {
     const Stages s = stages_of(packing, box);
-    const auto matrix = pfv::force_matrix(s.network, s.throats, s.spheres.size(), {true, true});
     const Eigen::VectorXd p = random_pressures(s.network.pores(), 8);
-    const Eigen::Vector3d sum =
-        pfv::multiply(matrix, p).rowwise().sum() + pressure_on_faces(s, p);
-    EXPECT_LT(sum.norm(), 1e-12);
+    for (const auto law :
+         {pfv::ConductanceLaw::hydraulic_radius, pfv::ConductanceLaw::open_throat}) {
+      const auto matrix = force_matrix_of(s, {true, true}, law);
+      const Eigen::Vector3d sum =
+          pfv::multiply(matrix, p).rowwise().sum() + pressure_on_faces(s, p);
+      EXPECT_LT(sum.norm(), 1e-12);
+    }
   }
 }
 
 TEST(Forces, VanishForAUniformPressure) {
   const Stages s = stages_of(data_packing("packing_100.csv"), pfv::Box{});
-  const auto matrix = pfv::force_matrix(s.network, s.throats, s.spheres.size(), {true, true});
+  const auto matrix = force_matrix_of(s);
   const Eigen::VectorXd p = Eigen::VectorXd::Ones(s.network.pores());
   EXPECT_LT(pfv::multiply(matrix, p).cwiseAbs().maxCoeff(), 1e-15);
 }
@@ -58,11 +70,44 @@ TEST(Forces, ArePressurePlusViscousPart) {
   const int n = s.spheres.size();
   const Eigen::VectorXd p = random_pressures(s.network.pores(), 8);
   const auto part = [&](pfv::ForceParts parts) {
-    return pfv::multiply(pfv::force_matrix(s.network, s.throats, n, parts), p);
+    return pfv::multiply(force_matrix_of(s, parts), p);
   };
   const Eigen::Matrix3Xd total = part({true, true});
   EXPECT_LT((part({true, false}) + part({false, true}) - total).norm(), 1e-15 * n);
   EXPECT_TRUE(part({true, false}).rightCols(6).isZero(0.0));  // faces: viscous shares only
+}
+
+// Eq. 18, and with the open-throat law more for a sphere that is more than four times smaller than the
+// largest of its facet: gamma max(1, r_max / (4 r)).
+TEST(ViscousShares, AreSurfacesAndFavourSmallSpheresInBigPores) {
+  const Stages s = stages_of(nine_spheres(0.1), upward_box(pfv::Wall::no_slip));
+  const auto papers = pfv::viscous_shares(pfv::ConductanceLaw::hydraulic_radius, s.network,
+                                          s.throats, s.spheres);
+  const auto open =
+      pfv::viscous_shares(pfv::ConductanceLaw::open_throat, s.network, s.throats, s.spheres);
+  int with_small = 0;
+  for (int t = 0; t < s.network.throats(); ++t) {
+    const int begin = s.network.throat_facets[t], end = s.network.throat_facets[t + 1];
+    double sum = 0.0, gamma = 0.0, weighted = 0.0;
+    const auto weight = [&](int f, int k) {
+      const bool small = s.network.facet_vertices[f][k] == 8;
+      with_small += small;
+      return small ? 10.0 / 4.0 : 1.0;
+    };
+    for (int f = begin; f < end; ++f)
+      for (int k = 0; k < 3; ++k) {
+        sum += open[f][k];
+        gamma += s.throats.facet_gamma[f][k];
+        weighted += weight(f, k) * s.throats.facet_gamma[f][k];
+      }
+    EXPECT_NEAR(sum, 1.0, 1e-14);
+    for (int f = begin; f < end; ++f)
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(papers[f][k], s.throats.facet_gamma[f][k] / gamma, 1e-14);
+        EXPECT_NEAR(open[f][k], weight(f, k) * s.throats.facet_gamma[f][k] / weighted, 1e-14);
+      }
+  }
+  EXPECT_GT(with_small, 0);
 }
 
 // A second implementation, facet by facet: sectors and surface shares by the signed partition.
@@ -94,7 +139,7 @@ TEST(Forces, AreSectorsAndSurfaceSharesFacetByFacet) {
     }
   }
   EXPECT_LT(crossing, s.network.facets() / 100);
-  const auto matrix = pfv::force_matrix(s.network, s.throats, s.spheres.size(), {true, true});
+  const auto matrix = force_matrix_of(s);
   const Eigen::Matrix3Xd forces = pfv::multiply(matrix, p);
   // pores on the rim of a pressure face rub on one side only: other shares for them
   std::vector<char> rim(s.spheres.size(), 0);

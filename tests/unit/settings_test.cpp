@@ -44,7 +44,7 @@ TEST(Names, EachFaceReadsBackAsItself) {
 
 TEST(Names, EachOptionReadsBackAsItself) {
   using namespace pfv;
-  for (const char* name : {"hydraulic_radius", "effective_radius"})
+  for (const char* name : {"hydraulic_radius", "effective_radius", "open_throat"})
     EXPECT_STREQ(name_of(conductance_law_named(name)), name);
   for (const char* name : {"auto", "cholmod", "klu2"})
     EXPECT_STREQ(name_of(solver_named(name)), name);
@@ -142,8 +142,11 @@ TEST(CheckOptions, RefusesWhatContradicts) {
                  o.split_forces = true;
                }),
                "need forces");
+  expect_names(refusal_of<Options>([](Options& o) { o.partition = pfv::Partition::yade; }),
+               "use it with the conductance law hydraulic_radius");
   refusal_of<Options>([](Options& o) { o.conductance = static_cast<pfv::ConductanceLaw>(7); });
   EXPECT_NO_THROW(pfv::check(Options{}));
+  EXPECT_EQ(Options{}.conductance, pfv::ConductanceLaw::open_throat);
 }
 
 }  // namespace

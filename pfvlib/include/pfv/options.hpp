@@ -5,9 +5,9 @@
 
 namespace pfv {
 
-/// Conductance of a throat. `hydraulic_radius`: Chareyre et al. 2012 eqs. 7-9 with alpha = 1/2.
-/// `effective_radius`: eq. 10. `open_throat`: the hydraulic radius where spheres touch, the drag of the
-/// spheres where they do not.
+/// Conductance of a throat. `open_throat`: the hydraulic radius where spheres touch, the drag of the
+/// spheres where they do not (doc/accuracy.md says why it is the default). `hydraulic_radius`: the
+/// papers', Chareyre et al. 2012 eqs. 7-9 with alpha = 1/2. `effective_radius`: eq. 10.
 enum class ConductanceLaw { hydraulic_radius, effective_radius, open_throat };
 
 /// Direct solvers behind Amesos2: cholmod (`automatic`), klu2 (the plain reference), mumps (where the
@@ -27,7 +27,7 @@ enum class Precision { full, mixed };
 
 /// How a throat's domain is parted among pores and spheres. `signed_angles`: signed volumes and solid
 /// angles, whose sums are the pore volume and the solid surface. `yade`: the rules of YADE's FlowEngine,
-/// to reproduce its results.
+/// to reproduce its results; refused with the open-throat law, which counts on signed volumes.
 enum class Partition { signed_angles, yade };
 
 /// What to do with a grain whose centre is not inside the flow box.
@@ -36,7 +36,7 @@ enum class OutsideGrains { refuse, leave_out };
 constexpr double default_tolerance = 1e-10;
 
 struct Options {
-  ConductanceLaw conductance = ConductanceLaw::hydraulic_radius;
+  ConductanceLaw conductance = ConductanceLaw::open_throat;
   Partition partition = Partition::signed_angles;
   SolverKind solver = SolverKind::automatic;
   OrderingKind ordering = OrderingKind::automatic;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace pfv {
 
@@ -46,6 +47,11 @@ struct Report {
   double mass_error = 0;
   std::optional<double> permeability;
   std::optional<Eigen::Matrix3d> permeability_tensor;  ///< m², periodic boxes; 0 along other axes
+  /// Of the permeability, or of the tensor without one: Stokes flow is expected within a factor of
+  /// 1 + this. Absent without a permeability.
+  std::optional<double> permeability_error;
+  std::optional<double> degenerate_share;  ///< of the dissipation, in throats that a rule set
+  std::vector<std::string> outside_range;  ///< why the estimate may not hold; none: it was checked
   Eigen::Vector3d force_sum = Eigen::Vector3d::Zero();
   double force_balance_error = 0;
   double residual = 0;

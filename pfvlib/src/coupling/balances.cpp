@@ -123,32 +123,6 @@ double traffic(const FlowData& flow) {
   return sum;
 }
 
-/// -mu U . g / g² for the macroscopic gradient g of a periodic box.
-std::optional<double> permeability_along_gradient(const FlowData& flow,
-                                                  const std::vector<double>& fluxes) {
-  const Eigen::Vector3d& gradient = flow.solved_box.pressure_gradient;
-  const Eigen::Vector3d velocity =
-      superficial_velocity(flow.built->network, fluxes, flow.solved_box.volume());
-  return -flow.fluid.viscosity * velocity.dot(gradient) / gradient.squaredNorm();
-}
-
-/// mu Q L / (dp S) between two opposite open faces (method: Darcy's law); absent where the flow is
-/// not steady or not one-dimensional.
-std::optional<double> permeability(const FlowData& flow, const Totals& totals,
-                                   const std::vector<double>& fluxes) {
-  if (flow.moving || flow.storage.size() > 0) return {};
-  if (!flow.solved_box.pressure_gradient.isZero(0.0))
-    return permeability_along_gradient(flow, fluxes);
-  const std::optional<int> axis = axis_of_flow(flow.solved_box);
-  if (!axis) return {};
-  std::array<double, 2> pressure{0.0, 0.0};
-  for (const auto& contact : flow.built->boundaries.contacts)
-    if (contact.face / 2 == *axis)
-      pressure[contact.face % 2] = flow.relative_pressures[contact.pore];
-  return permeability_of(flow.solved_box, *axis, flow.fluid.viscosity, totals,
-                         std::abs(pressure[0] - pressure[1]));
-}
-
 /// What the macroscopic gradient pushes into the pores of one period, across the surface that parts
 /// them from their images; grains and walls carry it.
 Eigen::Vector3d driving_force(const FlowData& flow) {
@@ -224,43 +198,6 @@ const Balance& FlowData::balance() {
   return *balance_;
 }
 
-Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vector<double>& fluxes,
-                                     double volume) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int t = 0; t < network.throats(); ++t) {
-    const auto [i, j] = network.throat_pores[t];
-    sum += fluxes[t] * (network.pore_centres.col(j) + network.throat_offset(t) -
-                        network.pore_centres.col(i));
-  }
-  return sum / volume;
-}
-
-/// One solve an axis, on the kept factor, for a unit gradient and no other drive.
-std::optional<Eigen::Matrix3d> permeability_tensor(const FlowData& flow) {
-  if (!flow.solved_box.any_periodic() || flow.moving || flow.storage.size() > 0) return {};
-  // a pressure on another face excludes a gradient
-  for (const auto& contact : flow.built->boundaries.contacts)
-    if (boundary_of(flow.solved_box, contact.boundary).kind != Boundary::Kind::sealed) return {};
-  const BuiltNetwork& built = *flow.built;
-  const PoreNetwork& network = built.network;
-  Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!flow.solved_box.periodic[axis]) continue;
-    const Eigen::Vector3d gradient = Eigen::Vector3d::Unit(axis);
-    const Eigen::VectorXd pressures = homogeneous_pressures(
-        built, gradient_sources(network, built.conductances.value, gradient));
-    std::vector<double> fluxes(network.throats());
-    for (int t = 0; t < network.throats(); ++t)
-      fluxes[t] =
-          built.conductances.value[t] * driving_pressure(network, t, pressures, gradient);
-    tensor.col(axis) = -flow.fluid.viscosity *
-                       superficial_velocity(network, fluxes, flow.solved_box.volume());
-  }
-  for (int axis = 0; axis < 3; ++axis)
-    if (!flow.solved_box.periodic[axis]) tensor.row(axis).setZero();
-  return tensor;
-}
-
 Report make_report(FlowData& flow) {
   Report report;
   fill_geometry(report, flow);
@@ -273,8 +210,7 @@ Report make_report(FlowData& flow) {
     report.storage_rate =
         flow.storage.dot(flow.pressures - flow.previous_pressures + balance.correction);
   report.mass_error = mass_error(totals, report.volume_rate_sum, report.storage_rate, traffic(flow));
-  report.permeability = permeability(flow, totals, balance.throat_fluxes);
-  report.permeability_tensor = permeability_tensor(flow);
+  add_permeability(report, flow, totals, balance.throat_fluxes);
   if (flow.forces.total.cols() > 0) report.force_sum = flow.forces.total.rowwise().sum();
   report.force_balance_error = force_balance_error(flow, balance.faces);
   report.residual = relative_residual(flow.solved_matrix(), flow.solution, flow.right_side);

@@ -49,6 +49,7 @@ struct BuiltNetwork {
   double storage_dt = 0.0;  ///< time step whose storage term is in the factor
 
   std::optional<VolumeRateMatrix> volume_rate_matrix;
+  ViscousShares viscous_shares;  ///< made with the force matrix
   std::optional<ForceMatrix> force_matrix;
   std::optional<ForceMatrix> pressure_force_matrix;
   std::optional<SurfacePressure> surface_pressure;

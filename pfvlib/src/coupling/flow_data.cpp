@@ -257,11 +257,14 @@ Eigen::Vector3d FlowData::buoyancy_of(int sphere) const {
 void FlowData::make_force_matrices() {
   const int active = built->grains.spheres.size();
   if (!built->force_matrix) {
-    built->force_matrix = force_matrix(built->network, built->throats, active, {true, true});
+    built->viscous_shares =
+        viscous_shares(options.conductance, built->network, built->throats, built->vertices);
+    built->force_matrix =
+        force_matrix(built->network, built->throats, built->viscous_shares, active, {true, true});
     ++counts.force_matrix;
     if (options.split_forces)
-      built->pressure_force_matrix =
-          force_matrix(built->network, built->throats, active, {true, false});
+      built->pressure_force_matrix = force_matrix(built->network, built->throats,
+                                                  built->viscous_shares, active, {true, false});
     if (options.shear_viscous)
       built->shear_pairs = shear_pairs(built->network, built->throats, built->vertices);
     if (options.sphere_pressure)
@@ -274,7 +277,8 @@ void FlowData::multiply_forces(const ForceMatrix& matrix, ForceParts parts,
                                Eigen::Matrix3Xd& result) {
   multiply(matrix, force_lag.size() > 0 ? force_lag : relative_pressures, *team, result);
   if (!box.pressure_gradient.isZero(0.0))
-    result += gradient_forces(built->network, built->throats, built->grains.spheres.size(), parts,
+    result += gradient_forces(built->network, built->throats, built->viscous_shares,
+                              built->grains.spheres.size(), parts,
                               box.pressure_gradient);
 }
 

@@ -18,6 +18,8 @@ struct Balance {
 /// How the forces of a step are found from the velocities of its beginning.
 enum class Coupling { explicit_step, staged, implicit };
 
+struct Totals;
+
 /// The state behind Flow.
 struct FlowData {
   Box box;
@@ -111,13 +113,10 @@ struct FlowData {
 
 /// Force on each face from the pressures of the last call; its flux is left 0.
 std::array<FaceResult, 6> face_forces(const FlowData& flow);
-/// Superficial velocity (m/s) through a periodic box: the sum over throats of flow rate times the way
-/// from pore to pore, over the volume.
-Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vector<double>& fluxes,
-                                     double volume);
-/// Permeability tensor (m²) along the periodic axes; absent without them, where grains move, and where
-/// other faces are open.
-std::optional<Eigen::Matrix3d> permeability_tensor(const FlowData& flow);
+/// Permeability and tensor with their estimated error, where they have a meaning; `report` holds the
+/// porosity already, `fluxes` are those of the throats, m³/s.
+void add_permeability(Report& report, const FlowData& flow, const Totals& totals,
+                      const std::vector<double>& fluxes);
 /// Everything a report holds, from the last call.
 Report make_report(FlowData& flow);
 

@@ -77,7 +77,8 @@ Eigen::Matrix3Xd FlowData::held_forces(const GrainDynamics& grains) const {
     if (lifted) held.col(i) += buoyancy_of(static_cast<int>(i));
   }
   if (!box.pressure_gradient.isZero(0.0))
-    held += gradient_forces(built->network, built->throats, static_cast<int>(count), {true, true},
+    held += gradient_forces(built->network, built->throats, built->viscous_shares,
+                            static_cast<int>(count), {true, true},
                             box.pressure_gradient);
   for (const Face face : all_faces) {
     const int f = static_cast<int>(face), axis = axis_of(face);

@@ -221,6 +221,10 @@ void check(const Options& options) {
   if (options.threads < 1 || options.threads > 64)
     throw InputError("the number of threads is " + std::to_string(options.threads) +
                      ": give 1 to 64");
+  if (options.partition == Partition::yade &&
+      options.conductance == ConductanceLaw::open_throat)
+    throw InputError("the yade partition reproduces YADE's results: use it with the conductance law "
+                     "hydraulic_radius (or effective_radius), not with open_throat");
   if (!options.forces &&
       (options.split_forces || options.sphere_pressure || options.shear_viscous))
     throw InputError("split forces, sphere pressures and shear viscous forces need forces: switch those "

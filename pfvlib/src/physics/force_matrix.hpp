@@ -6,8 +6,10 @@
 #include "physics/throats.hpp"
 #include "physics/volume_rates.hpp"
 #include "pfv/network.hpp"
+#include "pfv/options.hpp"
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 namespace pfv {
@@ -26,12 +28,22 @@ struct ForceParts {
   bool pressure = true, viscous = true;
 };
 
-/// Facet by facet, with n from pore i to pore j: sphere k gets A^k (p_i - p_j) n (pressure), and of
-/// A^f (p_i - p_j) n (viscous) the share gamma^k / gamma, as does a no-slip wall. Each facet hands out
-/// S (p_i - p_j) n in full, so the forces on spheres and faces balance for any pressures.
-/// A throat with gamma <= 0 shares its viscous force equally among its spheres.
-ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats, int spheres,
-                         ForceParts parts);
+/// Share of its throat's viscous force that each vertex of each facet takes; they add up to 1 over a
+/// throat.
+using ViscousShares = std::vector<std::array<double, 3>>;
+
+/// gamma^k / gamma (Chareyre et al. 2012 eq. 18), no-slip walls included. With the open-throat law a
+/// sphere's gamma^k counts max(1, r_max / (4 r_k)) times, r_max the largest radius of the facet: a sphere
+/// much smaller than its pore stands in the fast flow. A throat with gamma <= 0 shares equally among its
+/// spheres.
+ViscousShares viscous_shares(ConductanceLaw law, const PoreNetwork& network,
+                             const Throats& throats, const Spheres& spheres);
+
+/// Facet by facet, with n from pore i to pore j: sphere k gets A^k (p_i - p_j) n (pressure), and its share
+/// of A^f (p_i - p_j) n (viscous), as does a no-slip wall. Each throat hands out S (p_i - p_j) n in full,
+/// so the forces on spheres and faces balance for any pressures and shares.
+ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
+                         const ViscousShares& shares, int spheres, ForceParts parts);
 
 /// E^T: the force that does the work of the pressures on the change of the pores' volumes. Rows as in S,
 /// but row N + f is the force of the pressure on face f. On each facet its sum is that of S; it parts it
@@ -44,8 +56,9 @@ void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team&
 Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures);
 
 /// What a macroscopic gradient (Pa/m) adds to S p where throats reach into images: 3 x (N + 6), N.
-Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& throats, int spheres,
-                                 ForceParts parts, const Eigen::Vector3d& gradient);
+Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& throats,
+                                 const ViscousShares& shares, int spheres, ForceParts parts,
+                                 const Eigen::Vector3d& gradient);
 
 /// Mean pressure over each sphere's surface: pores weighted with the solid angle of their cells, Pa.
 struct SurfacePressure {

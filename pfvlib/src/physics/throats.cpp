@@ -214,6 +214,13 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
 }  // namespace
 
 // Facets inside a merged pore carry no flow; seen from its one centre their two pyramids cancel.
+double hydraulic_radius_of_pores(const Throats& throats, const std::array<int, 2>& pores) {
+  const double volume =
+      throats.pore_fluid_volume[pores[0]] + throats.pore_fluid_volume[pores[1]];
+  const double gamma = throats.pore_gamma[pores[0]] + throats.pore_gamma[pores[1]];
+  return gamma > 0.0 ? volume / gamma : 0.0;
+}
+
 Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
                         const Spheres& spheres) {
   Throats throats;

@@ -37,6 +37,12 @@ struct Throats {
   std::vector<double> pore_gamma;         ///< solid surface in its cells, m²
 };
 
+/// Shape factor of g = alpha A^f R_h² / mu: Chareyre et al. 2012, after eq. 9.
+inline constexpr double alpha = 0.5;
+
+/// R_h of two whole pores, m; 0 where they have no solid surface.
+double hydraulic_radius_of_pores(const Throats& throats, const std::array<int, 2>& pores);
+
 /// Measures every throat. Pure; cost about 4 µs a sphere.
 Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
                         const Spheres& spheres);
