@@ -66,8 +66,8 @@ void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options)
                      std::to_string(grid.refresh_every) + " steps: give a whole number >= 1");
   const Options defaults;
   refuse_if(fluid.bulk_modulus.has_value(), "bulk modulus");
-  refuse_if(options.conductance != defaults.conductance, "conductance law");
   refuse_if(options.partition != defaults.partition, "partition of throats");
+  refuse_if(options.conductance != defaults.conductance, "conductance law");
   refuse_if(options.retriangulation_strain != defaults.retriangulation_strain,
             "retriangulation strain");
 }
