@@ -354,6 +354,7 @@ TEST(DarcyGrid, RefusesWhatItCannotUse) {
   expect_one_line_with(refusal(periodic, {}, grid_of(1, 1, 1), {}), "no periodic axes");
   pfv::Options yade;
   yade.partition = pfv::Partition::yade;
+  yade.conductance = pfv::ConductanceLaw::hydraulic_radius;  // YADE's
   expect_one_line_with(refusal({}, {}, grid_of(1, 1, 1), yade), "no partition");
   expect_one_line_with(refusal({}, {}, grid_of(1, 0, 1), {}), "whole number >= 1");
   expect_one_line_with(refusal({}, {}, grid_of(2000, 2000, 2000), {}), "too many");
