@@ -165,6 +165,8 @@ def same_sample(name, source):
 
 def against_first(rows):
     for row in rows:
+        if "unstable" in row:
+            continue
         for curve in ("p", "U"):
             difference = np.array(row[curve]) - np.array(rows[0][curve])
             row[curve + "_rms"], row[curve + "_max"] = rms(difference), float(abs(difference).max())
@@ -179,7 +181,7 @@ def measure_thresholds():
     rows = []
     for strain in THRESHOLDS:
         name = f"threshold_{strain:g}"
-        words = ["N=500", "LOAD=200000", f"RETRIANGULATE={strain:g}"]
+        words = ["N=300", "LOAD=200000", f"RETRIANGULATE={strain:g}"]
         if rows:
             same_sample(name, f"threshold_{THRESHOLDS[0]:g}")
             words.append("KEEP=1")
@@ -208,15 +210,20 @@ COUPLINGS = [("every step", []), ("every 2nd", ["FIX=couple_every 2"]),
 
 def measure_coupling():
     """couple_every and the time step on the consolidation under 5 kPa, against a quarter step."""
-    first = consolidation("coupling_0", "N=500")
+    first = consolidation("coupling_0", "N=300")
+    import scene  # the oedometer's, found now
     planned = json.loads((KEPT / "oedometer" / "coupling_0_run.json").read_text())
     step = planned["time_step"]
     rows = []
 
     def add(name, *words):
         same_sample(f"coupling_{len(rows) + 1}", "coupling_0")
-        rows.append({"setting": name,
-                     **consolidation(f"coupling_{len(rows) + 1}", "N=500", "KEEP=1", *words)})
+        try:
+            result = consolidation(f"coupling_{len(rows) + 1}", "N=300", "KEEP=1", *words)
+        except scene.Failure as failure:  # the fluid throws the grains about
+            print(f"{name}: {failure}", flush=True)
+            result = {"unstable": True}
+        rows.append({"setting": name, **result})
 
     add("time step / 4", f"TIME_STEP={step / 4:.17g}")
     add("time step / 2", f"TIME_STEP={step / 2:.17g}")
@@ -230,6 +237,9 @@ def write_coupling(rows):
     lines = ["| | p(H/2): rms, largest difference / load | U: rms, largest difference | CPU, s | "
              "CPU / dry |", "|--|--|--|--|--|"]
     for row in rows:
+        if "unstable" in row:
+            lines.append(f"| {row['setting']} | unstable: ends with an error | | | |")
+            continue
         lines.append(f"| {row['setting']} | {100 * row['p_rms']:.3f}, {100 * row['p_max']:.3f} % | "
                      f"{100 * row['U_rms']:.3f}, {100 * row['U_max']:.3f} % | {row['cpu']:.1f} | "
                      f"{row['cpu'] / row['dry']:.2f} |")
@@ -240,6 +250,8 @@ def write_coupling(rows):
 def draw_runs(rows, name, label):
     figure, axes = plt.subplots(figsize=(6, 4))
     for row in rows[1:]:
+        if "unstable" in row:
+            continue
         axes.loglog(row["cpu"], 100 * max(row["p_max"], 1e-7), "ko")
         axes.annotate("  " + label(row), (row["cpu"], 100 * max(row["p_max"], 1e-7)))
     axes.set(xlabel="CPU s of the coupled run", ylabel="largest error of p(H/2), % of the load")
@@ -379,7 +391,7 @@ def measured(name, again):
 
 def cheapest(rows, error, limit):
     """The cheapest row whose error is within the limit, or None."""
-    good = [row for row in rows if row[error] <= limit]
+    good = [row for row in rows if row.get(error, limit + 1) <= limit]
     return min(good, key=lambda row: row["cpu"]) if good else None
 
 
@@ -388,11 +400,11 @@ def settings_for_one_percent(results):
     row = cheapest(results["thresholds"], "p_max", 0.01)
     if row:
         name = "never" if row["threshold"] > 1 else f"{100 * row['threshold']:g} %"
-        lines.append(f"| `retriangulate` (200 kPa, 500 grains) | {name} | "
+        lines.append(f"| `retriangulate` (200 kPa, 300 grains) | {name} | "
                      f"{100 * row['p_max']:.2f} % of the load | {row['cpu']:.0f} s |")
     row = cheapest(results["coupling"], "p_max", 0.01)
     if row:
-        lines.append(f"| `couple_every` and time step (5 kPa, 500 grains) | {row['setting']} | "
+        lines.append(f"| `couple_every` and time step (5 kPa, 300 grains) | {row['setting']} | "
                      f"{100 * row['p_max']:.2f} % of the load | {row['cpu']:.0f} s |")
     row = cheapest(results["sizes"], "scatter", 0.01)
     if row:
