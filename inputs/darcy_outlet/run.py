@@ -45,7 +45,8 @@ def time_step(across):
 
 def run_model(model, settings):
     """One run; returns what it says of itself."""
-    words = f"pfv retriangulate {settings['RETRIANGULATE']}"
+    # the law that the figures of README.md were measured with
+    words = f"pfv conductance hydraulic_radius retriangulate {settings['RETRIANGULATE']}"
     if model == "darcy_grid":
         cells = " ".join(map(str, CELLS))
         words = f"darcy_grid {cells} every {settings['EVERY']} drag {settings['DRAG']}"
