@@ -56,7 +56,8 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_stresses() const {
   const BuiltNetwork& built = *data_->built;
   const int active = built.grains.spheres.size();
   const Stresses stresses =
-      pfv::sphere_stresses(built.network, built.throats, built.vertices, data_->pressures, active);
+      pfv::sphere_stresses(built.network, built.throats, built.viscous_shares, built.vertices,
+                           data_->pressures, active);
   Stresses result = Stresses::Zero(6, static_cast<Eigen::Index>(data_->packing_ids.size()));
   for (int sphere = 0; sphere < active; ++sphere)
     result.col(built.grains.columns[sphere]) = stresses.col(sphere);

@@ -43,7 +43,8 @@ void add(Stresses& stresses, int sphere, const Eigen::Matrix3d& moment) {
 
 }  // namespace
 
-Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats, const Spheres& vertices,
+Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats,
+                         const ViscousShares& shares, const Spheres& vertices,
                          const Eigen::VectorXd& pressures, int spheres) {
   Stresses stresses = Stresses::Zero(6, spheres);
   for (int c = 0; c < network.cells(); ++c) {
@@ -59,7 +60,6 @@ Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats, con
     }
   }
   for (int t = 0; t < network.throats(); ++t) {
-    if (!(throats.gamma[t] > 0.0)) continue;
     const auto [i, j] = network.throat_pores[t];
     const Eigen::Vector3d force =
         throats.fluid_area[t] * (pressures[i] - pressures[j]) * throats.normal.col(t);
@@ -72,9 +72,8 @@ Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats, con
         const double radius = vertices.radii[vertex], length = way.norm();
         if (!(length > 0.0)) continue;
         const double volume = 4.0 / 3.0 * pi * std::pow(radius, 3);
-        const double share = throats.facet_gamma[f][k] / throats.gamma[t];
         add(stresses, network.vertex_sphere[vertex],
-            share * radius / (length * volume) * force * way.transpose());
+            shares[f][k] * radius / (length * volume) * force * way.transpose());
       }
     }
   }
