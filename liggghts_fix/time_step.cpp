@@ -27,13 +27,16 @@ const char* name_of(PfvCoupling coupling) {
 /// The cheaper of the two couplings that go beyond the limit, by what a step costs in solves of the
 /// explicit coupling (doc/stability.md, costs): a stage is a solve and a product with E and S, about
 /// 1.6 sqrt(R) of them a step; an implicit step is one solve with a denser factor, made anew `steps`
-/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB.
+/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB. Staged
+/// steps were stable in all runs up to `tried` limits and not in all beyond.
 PfvCoupling cheaper(double ratio, double steps, Eigen::Index grains) {
   constexpr double of_a_stage = 1.15, of_an_implicit_step = 8.0, of_its_factor = 800.0;
+  constexpr double tried = 100.0;
   constexpr Eigen::Index largest = 20000;
   const double staged = of_a_stage * 1.6 * std::sqrt(ratio);
   const double implicit = of_an_implicit_step + of_its_factor / steps;
-  return grains <= largest && implicit < staged ? PfvCoupling::implicit : PfvCoupling::staged;
+  return grains <= largest && (ratio > tried || implicit < staged) ? PfvCoupling::implicit
+                                                                   : PfvCoupling::staged;
 }
 
 }  // namespace
@@ -75,20 +78,41 @@ void FixPfv::choose_coupling() {
   const double steps = strain_of_a_step_ > 0.0
                            ? settings_.options.retriangulation_strain / strain_of_a_step_
                            : unknown;
-  chosen_ = ratio > 1.0 ? cheaper(ratio, steps, grains_.masses().size())
-                        : PfvCoupling::explicit_forces;
+  if (!(ratio > 1.0))
+    chosen_ = PfvCoupling::explicit_forces;
+  else
+    chosen_ = staged_failed_ ? PfvCoupling::implicit
+                             : cheaper(ratio, steps, grains_.masses().size());
+}
+
+void FixPfv::take_implicit(bool advance) {
+  const pfv::Packing packing = grains_.packing();
+  advance ? flow_->step_implicit(packing, elapsed_, dynamics())
+          : flow_->evaluate_implicit(packing, flow_step(), dynamics());
+}
+
+/// `auto` gives up staged steps, for the rest of the run, at the first that breaks its bound.
+void FixPfv::take_staged(bool advance) {
+  const pfv::Packing packing = grains_.packing();
+  try {
+    advance ? flow_->step_staged(packing, elapsed_, dynamics())
+            : flow_->evaluate_staged(packing, flow_step(), dynamics());
+  } catch (const pfv::UnstableStep& unstable) {
+    if (settings_.coupling != PfvCoupling::automatic || settings_.options.shear_viscous) throw;
+    staged_failed_ = true;
+    chosen_ = PfvCoupling::implicit;
+    print("Fix pfv (id " + std::string(id) + "): implicit coupling from step " +
+          std::to_string(update->ntimestep) + " on: " + unstable.what() + "\n");
+    take_implicit(advance);
+  }
 }
 
 void FixPfv::step_flow() {
   const double before = flow_->strain();
   const std::int64_t network = flow_->retriangulations();
   switch (chosen_) {
-    case PfvCoupling::staged:
-      flow_->step_staged(grains_.packing(), elapsed_, dynamics());
-      break;
-    case PfvCoupling::implicit:
-      flow_->step_implicit(grains_.packing(), elapsed_, dynamics());
-      break;
+    case PfvCoupling::staged: take_staged(true); break;
+    case PfvCoupling::implicit: take_implicit(true); break;
     default: flow_->step(grains_.packing(), elapsed_);
   }
   if (settings_.coupling != PfvCoupling::automatic) return;
@@ -102,11 +126,12 @@ void FixPfv::step_flow() {
 /// that starts from a restart file.
 void FixPfv::evaluate_flow() {
   strain_of_a_step_ = 0.0;
+  staged_failed_ = false;
   choose_coupling();
   if (chosen_ == PfvCoupling::staged)
-    flow_->evaluate_staged(grains_.packing(), flow_step(), dynamics());
+    take_staged(false);
   else if (chosen_ == PfvCoupling::implicit)
-    flow_->evaluate_implicit(grains_.packing(), flow_step(), dynamics());
+    take_implicit(false);
 }
 
 /// The papers' estimate pi rho d^2 / (1200 mu) of the grain that is worst off, s.

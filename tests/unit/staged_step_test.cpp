@@ -3,6 +3,7 @@
 #include "pfv/pfv.hpp"
 #include "physics/chebyshev_stages.hpp"
 #include "support/boxes.hpp"
+#include "support/packings.hpp"
 #include "pfv/dense_packing.hpp"
 
 #include <cmath>
@@ -111,6 +112,56 @@ TEST(StagedStep, StableAtAThousandTimesTheLimit) {
     run.move(run.flow.step_staged(run.packing.view(), 1000.0 * run.limit(), run.dynamics()).total,
              1000.0 * run.limit());
   EXPECT_LT(run.energy(), 0.3 * start);
+}
+
+/// Spheres that overlap by most of their radii: S is far from a transpose of E there, and the fluid feeds
+/// energy to motions at any time step.
+struct Feeding {
+  PackingArrays packing = ::support::packing_of({{0.6507, 0.3026, 0.1932, 0.2143},
+                                                 {0.6943, 0.4208, 0.1098, 0.0217},
+                                                 {0.6891, 0.4254, 0.1112, 0.0077},
+                                                 {0.4010, 0.8096, 0.8564, 0.3704},
+                                                 {0.6915, 0.3145, 0.5260, 0.1190},
+                                                 {0.7036, 0.2893, 0.5440, 0.0857}});
+  Eigen::VectorXd masses = 4e3 * packing.radii.array().cube();
+  Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, masses.size());
+  Flow flow{::support::upward_box(Wall::symmetry), ::support::viscosity_one()};
+  double limit;
+
+  Feeding() {
+    packing.velocities = Eigen::Matrix3Xd::Zero(3, masses.size());
+    packing.velocities.row(2) = -0.1 * packing.positions.row(2);
+    flow.evaluate(packing.view());
+    limit = flow.time_step_limit(masses);
+  }
+  GrainDynamics dynamics() const {
+    return {{masses.data(), masses.size()}, {none.data(), 3, none.cols()}};
+  }
+};
+
+TEST(StagedStep, ThatGoesOutOfControlIsRefusedAndTheImplicitOneTakesItsPlace) {
+  Feeding grains;
+  const double dt = 1e3 * grains.limit;
+  try {
+    grains.flow.step_staged(grains.packing.view(), dt, grains.dynamics());
+    FAIL() << "not refused";
+  } catch (const UnstableStep& error) {
+    ::support::expect_one_line_with(error.what(), "1e+03 limits");
+    ::support::expect_one_line_with(error.what(), "sphere 2");
+    ::support::expect_one_line_with(error.what(), "implicit");
+  }
+  EXPECT_EQ(grains.flow.time(), 0.0);
+  grains.flow.step_implicit(grains.packing.view(), dt, grains.dynamics());
+  EXPECT_EQ(grains.flow.time(), dt);
+  // the imposed 1 Pa and the grains' own inertia
+  EXPECT_LT(grains.flow.pore_pressures().cwiseAbs().maxCoeff(), 1.2);
+  EXPECT_LT(std::abs(grains.flow.report().mass_error), 1e-9);
+}
+
+TEST(StagedStep, OfTheSamePackingAtTenLimitsKeepsItsBound) {
+  Feeding grains;
+  grains.flow.step_staged(grains.packing.view(), 10.0 * grains.limit, grains.dynamics());
+  EXPECT_GT(grains.flow.stages(), 1);
 }
 
 TEST(StagedStep, BelowTheLimitItIsThePlainStep) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/balance_terms.hpp"
+#include "coupling/continuity.hpp"
 #include "coupling/flow_data.hpp"
 
 #include <algorithm>
@@ -8,69 +9,6 @@
 namespace pfv {
 
 namespace {
-
-/// Flow rate into the box through each pore: what its throats carry away, what fills its growing
-/// volume and what its compression stores. 0 where nothing is imposed, up to what the solve left.
-Eigen::VectorXd pore_inflows(const FlowData& flow, const std::vector<double>& fluxes,
-                             const Eigen::VectorXd& correction) {
-  const PoreNetwork& network = flow.built->network;
-  Eigen::VectorXd inflow = flow.rates;
-  if (flow.storage.size() > 0)
-    inflow.array() += flow.storage.array() * (flow.pressures.array() -
-                                              flow.previous_pressures.array() + correction.array());
-  for (int t = 0; t < network.throats(); ++t) {
-    inflow[network.throat_pores[t][0]] += fluxes[t];
-    inflow[network.throat_pores[t][1]] -= fluxes[t];
-  }
-  return inflow;
-}
-
-/// Fluxes from the differences of the pressures and of their correction: summed before the difference
-/// is taken, the correction would be rounded away.
-std::vector<double> fluxes_of(const FlowData& flow, const Eigen::VectorXd& correction) {
-  const PoreNetwork& network = flow.built->network;
-  std::vector<double> fluxes(network.throats());
-  for (int t = 0; t < network.throats(); ++t) {
-    const auto [i, j] = network.throat_pores[t];
-    fluxes[t] =
-        flow.built->conductances.value[t] *
-        (driving_pressure(network, t, flow.relative_pressures, flow.solved_box.pressure_gradient) +
-         (correction[i] - correction[j]));
-  }
-  return fluxes;
-}
-
-/// What is missing in the continuity of each pore, summed over the pores of a flux boundary.
-Eigen::VectorXd continuity_defect(const FlowData& flow) {
-  const Unknowns& unknowns = flow.built->unknowns;
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flow.built->network.pores());
-  Eigen::VectorXd defect = -pore_inflows(flow, fluxes_of(flow, none), none);
-  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b) {
-    const int unknown = unknowns.of_boundary[b];
-    if (unknown < 0) continue;
-    const auto first = std::find(unknowns.of_pore.begin(), unknowns.of_pore.end(), unknown);
-    defect[first - unknowns.of_pore.begin()] +=
-        boundary_of(flow.solved_box, static_cast<int>(b)).value;
-  }
-  return defect;
-}
-
-/// What the digits of a double leave out of the pressures (Pa): one solve on the kept factor for the
-/// continuity defect, which is exact to the round-off of the fluxes because it is taken from
-/// pressure differences. Where a pressure is 1e6 times the differences to its neighbours, the fluxes
-/// of the rounded pressures would miss the balance by 1e6 times the machine precision. A lattice whose
-/// grains have moved by 1e-5 of their size has pores that close to each other: there the solve itself
-/// is 1e-8 off. A correction beyond 1e-6 is no round-off but a solve that went wrong: it is left out,
-/// and the balances show it.
-Eigen::VectorXd pressure_correction(const FlowData& flow) {
-  constexpr double of_round_off = 1e-6;
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flow.built->network.pores());
-  if (flow.built->unknowns.count == 0) return none;
-  Eigen::VectorXd correction = homogeneous_pressures(*flow.built, continuity_defect(flow));
-  const bool rounding = correction.cwiseAbs().maxCoeff() <=
-                        of_round_off * flow.relative_pressures.cwiseAbs().maxCoeff();
-  return rounding ? correction : none;
-}
 
 /// Flow rate (m³/s) into the box through each boundary contact.
 std::vector<double> contact_inflows(const FlowData& flow, const Eigen::VectorXd& inflow) {
@@ -187,7 +125,7 @@ const Balance& FlowData::balance() {
   if (!balance_) {
     Balance fresh;
     fresh.correction = pressure_correction(*this);
-    fresh.throat_fluxes = fluxes_of(*this, fresh.correction);
+    fresh.throat_fluxes = throat_fluxes(*this, solved_box, fresh.correction);
     fresh.contact_inflows =
         contact_inflows(*this, pore_inflows(*this, fresh.throat_fluxes, fresh.correction));
     fresh.faces = face_forces(*this);

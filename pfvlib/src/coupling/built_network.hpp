@@ -47,6 +47,7 @@ struct BuiltNetwork {
   PressureSystem system;
   std::unique_ptr<LinearSolver> solver;
   double storage_dt = 0.0;  ///< time step whose storage term is in the factor
+  std::optional<bool> loses_digits;  ///< whether its solves need refinement; unknown before the first
 
   std::optional<VolumeRateMatrix> volume_rate_matrix;
   ViscousShares viscous_shares;  ///< made with the force matrix

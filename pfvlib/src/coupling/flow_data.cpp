@@ -157,6 +157,7 @@ void FlowData::assemble_and_factor(double step) {
   if (built->solver && (!compressible || step == built->storage_dt)) return;
   const bool new_pattern = !built->solver;
   built->time_step_limit.reset();  // it belongs to the factor
+  built->loses_digits.reset();
   if (built->implicit) built->implicit->yielding.resize(0);
   {
     const PhaseClock clock(seconds.assemble);
@@ -247,6 +248,7 @@ void FlowData::solve_pressures(double at_time, LinearSolver& solver) {
     throw SolverError(solver.name() +
                       " returned pressures that are not finite; the conductances span too many "
                       "orders of magnitude or the imposed values are too large");
+  if (&solver == built->solver.get()) refine_pressures();
 }
 
 Eigen::Vector3d FlowData::buoyancy_of(int sphere) const {

@@ -86,6 +86,10 @@ struct FlowData {
   void rates_of_motion(const Eigen::Matrix3Xd& motion);
   void impose(double at_time);
   void solve_pressures(double at_time, LinearSolver& solver);
+  /// Where conductances lie so far apart that a solve on the kept factor loses digits of the pressures
+  /// (found out by the first solve on it): iterative refinement with the continuity defect, which
+  /// keeps them. Throws SolverError where that does not converge.
+  void refine_pressures();
   Eigen::Vector3d buoyancy_of(int sphere) const;
   void make_force_matrices();
   void multiply_forces(const ForceMatrix& matrix, ForceParts parts, Eigen::Matrix3Xd& result);
@@ -100,6 +104,9 @@ struct FlowData {
   Eigen::Matrix3Xd held_forces(const GrainDynamics& grains) const;
   void run_stages(const Packing& packing, double step, double at_time,
                   const GrainDynamics& grains);
+  /// UnstableStep where a staged step changed the velocities beyond its bound; all 3 x (active + 6), m/s.
+  void refuse_feeding(const Eigen::Matrix3Xd& change, const Eigen::Matrix3Xd& explicit_one,
+                      const Eigen::RowVectorXd& per_mass, double ratio) const;
   void run_implicit(const Packing& packing, double step, double at_time,
                     const GrainDynamics& grains);
   void factor_implicit(const Eigen::RowVectorXd& per_mass);

@@ -7,8 +7,35 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
 
 namespace pfv {
+
+namespace {
+
+/// Twice the kinetic energy of a change of velocity, over dt, one entry a grain and face; a face moves
+/// along its axis alone, and what does not yield not at all.
+Eigen::VectorXd energies(const Eigen::Matrix3Xd& change, const Eigen::RowVectorXd& per_mass) {
+  const Eigen::Index spheres = change.cols() - 6;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(change.cols());
+  for (Eigen::Index k = 0; k < change.cols(); ++k) {
+    if (!(per_mass[k] > 0.0)) continue;
+    const double square = k < spheres ? change.col(k).squaredNorm()
+                                      : std::pow(change((k - spheres) / 2, k), 2);
+    result[k] = square / per_mass[k];
+  }
+  return result;
+}
+
+/// For a drag that brakes, symmetric and with eigenvalues within the stages' interval, the Chebyshev
+/// scheme changes the velocities by no more, in the norm of the kinetic energy, than one explicit step
+/// of the same length would: |1 - P(z)| <= |z| for its stability polynomial P. Twice as much is left
+/// for what S lacks of that (doc/stability.md, growth); beyond, the fluid multiplies velocities by
+/// more than three in one step, and pressures after them.
+constexpr double allowed_change = 2.0;
+
+}  // namespace
 
 double FlowData::time_step_limit(const Eigen::VectorXd& masses,
                                  const std::array<Piston, 6>& pistons) {
@@ -74,7 +101,7 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
   Eigen::VectorXd mean_rates = mean_pressure, pressure_before = mean_pressure,
                   rates_before = mean_pressure;
   mean_motion.setZero(3, start.cols());
-  Eigen::Matrix3Xd motion_before = mean_motion;
+  Eigen::Matrix3Xd motion_before = mean_motion, first_change;
   for (const ChebyshevStage& stage : all) {
     const Eigen::Matrix3Xd motion = now;
     rates_of_motion(motion);
@@ -85,6 +112,7 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
              .rowwise() *
          per_mass.array())
             .matrix();
+    if (first_change.size() == 0) first_change = change;
     Eigen::Matrix3Xd next =
         (1.0 - stage.m - stage.n) * start + stage.m * now + stage.n * before + stage.f * change;
     before = std::move(now);
@@ -98,9 +126,31 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
     carry(mean_rates, rates_before, rates);
     carry(mean_motion, motion_before, motion);
   }
+  refuse_feeding(now - start, first_change, per_mass, step / limit);
   relative_pressures = mean_pressure;
   rates = mean_rates;
   pressures = relative_pressures.array() + reference;
+}
+
+void FlowData::refuse_feeding(const Eigen::Matrix3Xd& change, const Eigen::Matrix3Xd& explicit_one,
+                              const Eigen::RowVectorXd& per_mass, double ratio) const {
+  const Eigen::VectorXd gained = energies(change, per_mass);
+  const double explicit_sum = energies(explicit_one, per_mass).sum();
+  if (gained.sum() <= allowed_change * allowed_change * explicit_sum) return;
+  Eigen::Index worst;
+  gained.maxCoeff(&worst);
+  const Eigen::Index spheres = gained.size() - 6;
+  const std::string who =
+      worst < spheres
+          ? "sphere " + std::to_string(built->grains.spheres.ids[static_cast<std::size_t>(worst)])
+          : std::string("the piston on ") + name_of(static_cast<Face>(worst - spheres));
+  std::ostringstream text;
+  text.precision(3);
+  text << "a staged step of " << ratio << " limits of the explicit coupling went out of control, most "
+       << "at " << who << ": it changed velocities " << std::sqrt(gained.sum() / explicit_sum)
+       << " times as much as an explicit step would, where a fluid that brakes stays below; take the "
+          "implicit coupling or a much shorter step";
+  throw UnstableStep(text.str());
 }
 
 }  // namespace pfv

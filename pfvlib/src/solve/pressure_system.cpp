@@ -204,9 +204,11 @@ Eigen::VectorXd gradient_sources(const PoreNetwork& network,
                                  const Eigen::Vector3d& gradient) {
   Eigen::VectorXd sources = Eigen::VectorXd::Zero(network.pores());
   for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    if (i == j) continue;  // what goes out to its own image comes in from it
     const double rate = conductances[t] * gradient.dot(network.throat_offset(t));
-    sources[network.throat_pores[t][0]] += rate;
-    sources[network.throat_pores[t][1]] -= rate;
+    sources[i] += rate;
+    sources[j] -= rate;
   }
   return sources;
 }

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/continuity.hpp"
+
+#include "coupling/flow_data.hpp"
+#include "pfv/error.hpp"
+
+#include <algorithm>
+
+namespace pfv {
+
+namespace {
+
+/// What is missing in the continuity of each pore, summed over the pores of a flux boundary.
+Eigen::VectorXd continuity_defect(const FlowData& flow, const Box& box) {
+  const Unknowns& unknowns = flow.built->unknowns;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flow.built->network.pores());
+  Eigen::VectorXd defect = -pore_inflows(flow, throat_fluxes(flow, box, none), none);
+  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b) {
+    const int unknown = unknowns.of_boundary[b];
+    if (unknown < 0) continue;
+    const auto first = std::find(unknowns.of_pore.begin(), unknowns.of_pore.end(), unknown);
+    defect[first - unknowns.of_pore.begin()] += boundary_of(box, static_cast<int>(b)).value;
+  }
+  return defect;
+}
+
+}  // namespace
+
+Eigen::VectorXd pore_inflows(const FlowData& flow, const std::vector<double>& fluxes,
+                             const Eigen::VectorXd& correction) {
+  const PoreNetwork& network = flow.built->network;
+  Eigen::VectorXd inflow = flow.rates;
+  if (flow.storage.size() > 0)
+    inflow.array() += flow.storage.array() * (flow.pressures.array() -
+                                              flow.previous_pressures.array() + correction.array());
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    if (i == j) continue;  // to its own image: what would cancel here is round-off of a large flux
+    inflow[i] += fluxes[t];
+    inflow[j] -= fluxes[t];
+  }
+  return inflow;
+}
+
+std::vector<double> throat_fluxes(const FlowData& flow, const Box& box,
+                                  const Eigen::VectorXd& correction) {
+  const PoreNetwork& network = flow.built->network;
+  std::vector<double> fluxes(network.throats());
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    fluxes[t] =
+        flow.built->conductances.value[t] *
+        (driving_pressure(network, t, flow.relative_pressures, box.pressure_gradient) +
+         (correction[i] - correction[j]));
+  }
+  return fluxes;
+}
+
+Eigen::VectorXd pressure_correction(const FlowData& flow) {
+  constexpr double of_round_off = 1e-6;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flow.built->network.pores());
+  if (flow.built->unknowns.count == 0) return none;
+  Eigen::VectorXd correction =
+      homogeneous_pressures(*flow.built, continuity_defect(flow, flow.solved_box));
+  const bool rounding = correction.cwiseAbs().maxCoeff() <=
+                        of_round_off * flow.relative_pressures.cwiseAbs().maxCoeff();
+  return rounding ? correction : none;
+}
+
+void FlowData::refine_pressures() {
+  constexpr double exact = 1e-10, hopeless = 1e-6;
+  constexpr int sweeps = 4;
+  if (built->unknowns.count == 0 || is_iterative(options.solver) ||
+      options.precision == Precision::mixed || !built->loses_digits.value_or(true))
+    return;
+  double last = 0.0;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    const Eigen::VectorXd correction =
+        homogeneous_pressures(*built, continuity_defect(*this, box));
+    const double largest = relative_pressures.cwiseAbs().maxCoeff();
+    last = correction.cwiseAbs().maxCoeff();
+    if (!built->loses_digits) built->loses_digits = last > exact * largest;
+    if (last <= exact * largest) return;
+    relative_pressures += correction;
+    pressures = relative_pressures.array() + reference;
+    last /= largest;
+  }
+  if (!(last <= hopeless)) throw SolverError(contrast());
+}
+
+}  // namespace pfv
