@@ -205,6 +205,10 @@ std::array<pfv::Piston, 6> PfvFaceSources::pistons(bool forces) const {
   return pistons;
 }
 
+bool PfvFaceSources::any_mesh() const {
+  return std::any_of(meshes_.begin(), meshes_.end(), [](const auto* mesh) { return mesh != nullptr; });
+}
+
 void PfvFaceSources::push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const {
   for (int number = 0; number < 6; ++number) {
     if (!meshes_[number]) continue;

@@ -43,6 +43,7 @@ class PfvFaceSources : protected Pointers {
   /// target; collective.
   std::array<pfv::Piston, 6> pistons(bool forces) const;
 
+  bool any_mesh() const;
   /// Adds a force (N) to what the meshes' stress modules record in this step, so that outputs and
   /// servos see it. Rank 0.
   void push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const;

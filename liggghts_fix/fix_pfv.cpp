@@ -303,8 +303,7 @@ void FixPfv::apply_forces() {
 }
 
 void FixPfv::push_meshes() {
-  if (comm->me != 0) return;
-  faces_.push_meshes(flow_->face_forces());
+  if (comm->me == 0 && faces_.any_mesh()) faces_.push_meshes(flow_->face_forces());
 }
 
 // ------------------------------------------------------------------------------- changes, restart

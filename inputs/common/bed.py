@@ -2,7 +2,6 @@
 """Sea beds of the thesis (Catalano 2012, chapter 6): a vessel 2.0 x 0.5 m, about 1 m of grains."""
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 

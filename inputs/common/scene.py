@@ -11,6 +11,11 @@ from pathlib import Path
 
 BIN = Path(os.environ.get("PFV_BIN", Path(__file__).resolve().parents[2] / "build" / "bin"))
 
+# settings that many scenes have: (type, default, what it is)
+SEED = (int, 1, "sample number, 1, 2, ...")
+TOP = (str, "plane", "plane or extent: where the flow box ends")
+OUT = (str, "post/sample", "where results go, without ending")
+
 
 class Failure(Exception):
     """What went wrong and what to do, in one line."""
@@ -33,6 +38,17 @@ def parse(words, keys):
         except ValueError:
             raise BadSetting(f"{key} needs a number, not '{value}'") from None
     return settings
+
+
+def numbers(settings, key, kind=float):
+    """The comma-separated numbers of a setting, above 0, sorted."""
+    try:
+        values = sorted(kind(word) for word in settings[key].split(","))
+    except ValueError:
+        raise BadSetting(f"{key} is a number, or several with commas between them") from None
+    if values[0] <= 0:
+        raise BadSetting(f"{key} must be above 0")
+    return values
 
 
 def primes(seed, count=5):

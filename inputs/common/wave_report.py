@@ -2,21 +2,16 @@
 """Figures and measures of waves on deformable beds, as in chapter 6 of the thesis."""
 import math
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import bed
 import contact_stress
 import wave
+from plotting import plt, save_figure
 
 
 def save(figure, run, name):
-    figure.tight_layout()
-    figure.savefig(run.folder / f"{run.out}_{name}.png", dpi=90)
-    plt.close(figure)
+    save_figure(figure, run.folder / f"{run.out}_{name}.png")
 
 
 def displacements(run, step):

@@ -9,12 +9,12 @@ import wave_report
 
 KEYS = {
     "N": (int, 1000, "grains"),
-    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "SEED": scene.SEED,
     "RATE": (float, 200.0, "growth of the amplitude, Pa/s"),
     "AMPLITUDE": (float, 2000.0, "amplitude at the end, Pa"),
-    "TOP": (str, "plane", "plane or extent: where the flow box ends"),
+    "TOP": scene.TOP,
     "WORDS": (str, "", "more words for fix pfv"),
-    "OUT": (str, "post/sample", "where results go, without ending"),
+    "OUT": scene.OUT,
 }
 THESIS = {"dense": {"porosity": 0.368, "amplitude": 1500.0},
           "loose": {"porosity": 0.436, "amplitude": 375.0}}

@@ -5,25 +5,21 @@ grains, and what it costs.
 
     run.py column [N=1000] [SEED=1]
 """
-import json
 import shutil
 import sys
 from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
 sys.path[:0] = [str(SCENE.parent / "oedometer"), str(SCENE.parent / "common")]
-import matplotlib  # noqa: E402
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 import analyse as terzaghi_analysis  # noqa: E402
 import run as oedometer  # noqa: E402
 import scene  # noqa: E402
 import terzaghi  # noqa: E402
+from plotting import plt, save_figure  # noqa: E402
 
-KEYS = {"N": (int, 1000, "grains"), "SEED": (int, 1, "sample number"),
+KEYS = {"N": (int, 1000, "grains"), "SEED": scene.SEED,
         "OUT": (str, "post/column", "where results go, without ending")}
 # what the coupled run needs of the sample and of the dry test
 KEPT = (".restart", ".dump", "_loaded.dump", "_steady.csv", "_measured.json")
@@ -77,9 +73,7 @@ def draw(settings, runs):
     for part in axes:
         part.grid(alpha=0.3)
     axes[1].legend(fontsize=7)
-    figure.tight_layout()
-    figure.savefig(SCENE / f"{settings['OUT']}.png", dpi=110)
-    plt.close(figure)
+    save_figure(figure, SCENE / f"{settings['OUT']}.png", dpi=110)
 
 
 def work(words):

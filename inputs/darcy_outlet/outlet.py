@@ -2,14 +2,11 @@
 """Figures and promises of the runs through the hole."""
 import re
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import scene
 from fields import Fields
+from plotting import plt, save_figure
 
 BOX = np.array([0.1, 0.2, 0.1])  # m
 BINS = (10, 20, 10)
@@ -129,9 +126,7 @@ def draw(folder, settings, runs):
 
 
 def save(figure, folder, settings, name):
-    figure.tight_layout()
-    figure.savefig(folder / f"{settings['OUT']}_{name}.png", dpi=110)
-    plt.close(figure)
+    save_figure(figure, folder / f"{settings['OUT']}_{name}.png", dpi=110)
 
 
 def measure(folder, run):

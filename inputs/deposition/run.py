@@ -4,7 +4,6 @@
 
     run.py [KEY=VALUE...]      called by ./run.sh deposition [KEY=VALUE...]
 """
-import json
 import math
 import re
 import sys
@@ -12,26 +11,23 @@ from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
 sys.path.insert(0, str(SCENE.parent / "common"))
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import bed
 import contact_stress
 import fields
 import scene
+from plotting import plt, save_figure
 
 KEYS = {
     "N": (int, 400, "grains"),
-    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "SEED": scene.SEED,
     "VISCOSITY": (float, 10.0, "Pa s"),
     "END": (float, 8.0, "duration at 10 Pa s, s; goes with the viscosity"),
     "MODULUS": (float, 1.5e6, "E of the contact law, Pa"),
-    "TOP": (str, "plane", "plane or extent: where the flow box ends"),
+    "TOP": scene.TOP,
     "STRAIN": (float, 0.1, "pore strain at which the network is built anew"),
-    "OUT": (str, "post/sample", "where results go, without ending"),
+    "OUT": scene.OUT,
 }
 RADIUS, POROSITY, HEIGHT = 0.03, 0.61, 0.967  # m, of the cloud, m: thesis table 4.4
 PLANES = 36  # of the pressure profile
@@ -134,9 +130,7 @@ def draw_sensors(run, rows, base):
     right.axhline(rows[:, 2].mean(), color="k", ls="--", lw=1, label="(1-n)(ρs-ρf)/ρf")
     right.set(xlabel="t, s", ylabel="hydraulic gradient", title="between neighbours")
     right.legend(fontsize=8)
-    figure.tight_layout()
-    figure.savefig(f"{base}_sensors.png", dpi=90)
-    plt.close(figure)
+    save_figure(figure, f"{base}_sensors.png")
 
 
 def draw_stress(run, base):
@@ -159,9 +153,7 @@ def draw_stress(run, base):
         place.set(title=f"t = {time:.2f} s", xlabel="kPa")
     axes[0].set(ylabel="z, m")
     axes[0].legend(fontsize=7)
-    figure.tight_layout()
-    figure.savefig(f"{base}_stress.png", dpi=90)
-    plt.close(figure)
+    save_figure(figure, f"{base}_stress.png")
 
 
 def grains_above(grains, height):

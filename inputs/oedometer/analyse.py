@@ -8,15 +8,13 @@ import json
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "common"))
 import numpy as np
 
 import layers
 import stress
 import terzaghi
+from plotting import plt, save_figure
 
 EARLY, LATE = 0.02, 1.5  # T_v between which the curves are compared
 
@@ -152,9 +150,7 @@ def draw(run, figures):
 
 
 def save(figure, run, name):
-    figure.tight_layout()
-    figure.savefig(run.base.parent / f"{run.base.name}_{name}.png", dpi=120)
-    plt.close(figure)
+    save_figure(figure, run.base.parent / f"{run.base.name}_{name}.png", dpi=120)
 
 
 def draw_curves(run):

@@ -19,7 +19,7 @@ SIDE, DENSITY, CONFINEMENT = 0.1, 2600.0, 76.0e3  # m, kg/m3, Pa
 
 KEYS = {
     "N": (int, 1000, "grains"),
-    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "SEED": scene.SEED,
     "LOAD": (float, 5000.0, "step load, Pa"),
     "VISCOSITY": (float, 0.0, "Pa s; 0: chosen from the grain size"),
     "TIME_STEP": (float, 0.0, "s; 0: chosen from contact and viscous limit"),
@@ -28,7 +28,7 @@ KEYS = {
     "RETRIANGULATE": (float, 0.01, "pore strain"),
     "FIELDS": (int, 0, "instants of the consolidation written for ParaView; 0: none"),
     "FIX": (str, "couple_every 1", "more keywords of fix pfv, in quotes"),
-    "OUT": (str, "post/sample", "where results go, without ending"),
+    "OUT": scene.OUT,
     "KEEP": (int, 0, "1: take the sample, dry test and permeability that OUT holds"),
 }
 

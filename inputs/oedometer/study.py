@@ -8,15 +8,12 @@ A run that post/ already holds is taken as it is: empty post/ to repeat everythi
 import shutil
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import analyse
 import run
 import terzaghi
+from plotting import plt, save_figure
 
 SAMPLES = [(300, 1), (1000, 1), (1000, 2), (1000, 3), (1000, 4), (2000, 1), (5000, 1), (5000, 2)]
 THRESHOLDS = [0.0001, 0.001, 0.01]
@@ -87,9 +84,7 @@ def draw_samples(runs):
     left.legend(fontsize=7)
     for axes in (left, right):
         axes.grid(alpha=0.3)
-    figure.tight_layout()
-    figure.savefig(FIGURES / "oedometer_samples.png", dpi=120)
-    plt.close(figure)
+    save_figure(figure, FIGURES / "oedometer_samples.png", dpi=120)
 
 
 def study():

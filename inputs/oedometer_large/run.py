@@ -10,21 +10,18 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "oedometer"), str(HERE.parent / "common")]
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import analyse
 import run as oedometer
 import scene
 import terzaghi
+from plotting import plt, save_figure
 
 KEYS = {key: oedometer.KEYS[key] for key in ("N", "SEED", "RETRIANGULATE")}
 KEYS.update(LOAD=(float, 200.0e3, "step load, Pa"),
             FIELDS=(int, 10, "instants written for ParaView"),
-            OUT=(str, "post/sample", "where results go, without ending"))
+            OUT=scene.OUT)
 SMALL = 5000.0  # Pa: the load of the scene oedometer, at which the initial modulus is measured
 THESIS = {"strain": 0.0394, "K": -0.094, "E": 5620.0 / 5895.0 - 1}
 
@@ -69,9 +66,7 @@ def draw(records, initial, final, base):
     for place in axes:
         place.legend(fontsize=8)
         place.grid(alpha=0.3)
-    figure.tight_layout()
-    figure.savefig(f"{base}_large.png", dpi=90)
-    plt.close(figure)
+    save_figure(figure, f"{base}_large.png")
 
 
 def work(words):

@@ -9,21 +9,18 @@ from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
 sys.path.insert(0, str(SCENE.parent / "common"))
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import fields
 import scene
+from plotting import plt
 
 KEYS = {
     "PACKING": (str, "", "CSV with id,x,y,z,radius or LIGGGHTS dump; none: tests/data/packing_500"),
     "BOX": (str, "", "XLO,XHI,YLO,YHI,ZLO,ZHI in m; none: the extent of the grains"),
     "LAW": (str, "hydraulic_radius", "conductance law"),
     "WALL": (str, "symmetry", "symmetry or no_slip side walls"),
-    "OUT": (str, "post/sample", "where results go, without ending"),
+    "OUT": scene.OUT,
 }
 PACKING = SCENE.parents[1] / "tests" / "data" / "packing_500.csv"
 PACKING_BOX = "0,1,0,1,0,1"

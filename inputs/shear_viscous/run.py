@@ -9,24 +9,21 @@ from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
 sys.path.insert(0, str(SCENE.parent / "common"))
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import bed
 import scene
 import wave
 import wave_report
+from plotting import plt, save_figure
 
 KEYS = {
     "N": (int, 300, "grains"),
-    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "SEED": scene.SEED,
     "AMPLITUDE": (float, 1000.0, "of the wave, Pa"),
     "END": (float, 2.0, "duration, s"),
-    "TOP": (str, "plane", "plane or extent: where the flow box ends"),
-    "OUT": (str, "post/sample", "where results go, without ending"),
+    "TOP": scene.TOP,
+    "OUT": scene.OUT,
 }
 
 
@@ -51,9 +48,7 @@ def draw(runs, base):
     axes[0].set(ylabel="mean settlement, mm")
     axes[1].set(ylabel="kinetic energy, J", xlabel="t, s")
     axes[0].legend()
-    figure.tight_layout()
-    figure.savefig(f"{base}_shear.png", dpi=90)
-    plt.close(figure)
+    save_figure(figure, f"{base}_shear.png")
 
 
 def work(words):

@@ -10,36 +10,23 @@ from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
 sys.path.insert(0, str(SCENE.parent / "common"))
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import bed
 import scene
 import wave
+from plotting import plt, save_figure
 
 KEYS = {
     "N": (int, 300, "grains"),
-    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "SEED": scene.SEED,
     "AMPLITUDES": (str, "200,600,1200", "Pa, with commas"),
     "PERIODS": (str, "0.5,2", "s, with commas"),
     "END": (float, 3.0, "duration of each run, s"),
-    "TOP": (str, "plane", "plane or extent: where the flow box ends"),
-    "OUT": (str, "post/sample", "where results go, without ending"),
+    "TOP": scene.TOP,
+    "OUT": scene.OUT,
 }
 LIQUEFIED = 0.8  # of grad H / i_c: the thesis' nearly complete liquefaction
-
-
-def numbers(settings, key):
-    try:
-        values = sorted(float(word) for word in settings[key].split(","))
-    except ValueError:
-        raise scene.BadSetting(f"{key} are numbers with commas between them") from None
-    if values[0] <= 0:
-        raise scene.BadSetting(f"{key} must be above 0")
-    return values
 
 
 def consolidation_time(settings, measures):
@@ -74,14 +61,12 @@ def draw(rows, settings, consolidation, base):
              title=f"largest mean ∇H/i_c over a period, {settings['N']} grains, "
                    f"t_c = {consolidation:.1f} s")
     figure.colorbar(dots, label="1: liquefied")
-    figure.tight_layout()
-    figure.savefig(f"{base}_map.png", dpi=90)
-    plt.close(figure)
+    save_figure(figure, f"{base}_map.png")
 
 
 def work(words):
     settings = scene.parse(words, KEYS)
-    amplitudes, periods = numbers(settings, "AMPLITUDES"), numbers(settings, "PERIODS")
+    amplitudes, periods = (scene.numbers(settings, key) for key in ("AMPLITUDES", "PERIODS"))
     if settings["N"] < 100:
         raise scene.BadSetting("N must be at least 100")
     measures = bed.prepare(SCENE, "loose", settings["N"], settings["SEED"], settings["OUT"])

@@ -9,25 +9,22 @@ from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
 sys.path.insert(0, str(SCENE.parent / "common"))
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import bed
 import scene
 import wave
 import wave_report
+from plotting import plt, save_figure
 
 KEYS = {
     "N": (int, 300, "grains"),
-    "SEED": (int, 1, "sample number, 1, 2, ..."),
+    "SEED": scene.SEED,
     "AMPLITUDE": (float, 1000.0, "of the wave, Pa"),
     "END": (float, 2.0, "duration, s"),
     "VISCOSITIES": (str, "0.1,1,5", "over that of the other wave scenes, with commas"),
-    "TOP": (str, "plane", "plane or extent: where the flow box ends"),
-    "OUT": (str, "post/sample", "where results go, without ending"),
+    "TOP": scene.TOP,
+    "OUT": scene.OUT,
 }
 
 
@@ -58,19 +55,14 @@ def draw(runs, base):
     axes[1].set(ylabel="λ (eq. 2.16)")
     axes[2].set(ylabel="porosity", xlabel="t, s")
     axes[0].legend(fontsize=8)
-    figure.tight_layout()
-    figure.savefig(f"{base}_permeability.png", dpi=90)
-    plt.close(figure)
+    save_figure(figure, f"{base}_permeability.png")
 
 
 def work(words):
     settings = scene.parse(words, KEYS)
-    try:
-        factors = [float(word) for word in settings["VISCOSITIES"].split(",")]
-    except ValueError:
-        raise scene.BadSetting("VISCOSITIES are numbers with commas between them") from None
-    if settings["N"] < 100 or min(factors) <= 0:
-        raise scene.BadSetting("N must be at least 100, VISCOSITIES above 0")
+    factors = scene.numbers(settings, "VISCOSITIES")
+    if settings["N"] < 100:
+        raise scene.BadSetting("N must be at least 100")
     measures = bed.prepare(SCENE, "loose", settings["N"], settings["SEED"], settings["OUT"])
     runs = []
     for k, factor in enumerate(factors):

@@ -10,21 +10,18 @@ from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
 sys.path.insert(0, str(SCENE.parent / "common"))
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 import bed
 import fields
 import scene
+from plotting import plt, save_figure
 
 KEYS = {
     "N": (str, "312,1250,5000", "grains, or a list of sizes"),
     "WIDTH": (float, 3.0, "of the bed across the wave, mean diameters"),
-    "SEED": (int, 1, "sample number, 1, 2, ..."),
-    "OUT": (str, "post/sample", "where results go, without ending"),
+    "SEED": scene.SEED,
+    "OUT": scene.OUT,
 }
 LENGTH, DEPTH, AMPLITUDE = 2.0, 1.0, 1000.0  # m, m, Pa
 WAVE = math.pi / LENGTH
@@ -110,9 +107,7 @@ def draw_fields(result, base):
     right.quiver(*middle, blocks[..., 0], blocks[..., 2], color="C0", **unit)
     right.set(xlabel="x, m", title="Darcy velocity: throats (blue), eqs. 6.25-6.26 (grey)")
     figure.suptitle(f"{result['N']} grains")
-    figure.tight_layout()
-    figure.savefig(f"{base}_fields.png", dpi=100)
-    plt.close(figure)
+    save_figure(figure, f"{base}_fields.png", dpi=100)
 
 
 def draw_errors(results, base):
@@ -124,20 +119,15 @@ def draw_errors(results, base):
                 label="N^(-1/2), as the diameter")
     axes.set(xlabel="grains", ylabel="error, %")
     axes.legend()
-    figure.tight_layout()
-    figure.savefig(f"{base}_errors.png", dpi=100)
-    plt.close(figure)
+    save_figure(figure, f"{base}_errors.png", dpi=100)
 
 
 def work(words):
     settings = scene.parse(words, KEYS)
-    try:
-        sizes = [int(word) for word in settings["N"].split(",")]
-    except ValueError:
-        raise scene.BadSetting("N is a number of grains, or several with commas") from None
+    sizes = scene.numbers(settings, "N", int)
     if min(sizes) < 100 or settings["WIDTH"] < 1.5:
         raise scene.BadSetting("N must be at least 100 and WIDTH 1.5")
-    results = [one_size(grains, settings) for grains in sorted(sizes)]
+    results = [one_size(grains, settings) for grains in sizes]
     base = SCENE / settings["OUT"]
     print(f"\nWave on a fixed bed {settings['WIDTH']:g} diameters wide")
     print("      N   rms of p / A   largest   flow through planes, rms   CPU, s")

@@ -12,7 +12,7 @@ namespace pfv::app {
 struct BenchArguments {
   std::vector<std::string> sizes{"1000", "5000", "20000"};
   std::vector<std::string> solvers{"auto"};
-  std::string ordering = "auto", conductance = "hydraulic_radius", repeat = "5";
+  std::string ordering = "auto", conductance, precision, threads = "1", repeat = "5";
   std::optional<std::string> predict, steps, steps_per_network, report;
 };
 

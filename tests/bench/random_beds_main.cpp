@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: pfv_random_beds FOLDER\n");
     return 2;
   }
-  for (const pfv::support::NamedBed& bed : pfv::support::random_beds()) {
+  for (const support::NamedBed& bed : support::random_beds()) {
     const std::string path = std::string(argv[1]) + "/" + bed.name + ".csv";
     std::FILE* file = std::fopen(path.c_str(), "w");
     if (!file) {

@@ -26,7 +26,17 @@ class Bench(CommandTest):
             for times in row["cpu_seconds"].values():
                 self.assertEqual(len(times["repeats"]), 3)
                 self.assertEqual(times["median"], sorted(times["repeats"])[1])
+            self.assertEqual(set(row["wall_seconds"]), {"rebuild", "step"})
         self.assertIn("load_before", report["machine"])
+        self.assertEqual(report["conductance"], "open_throat")
+
+    def test_precision_and_threads_reach_the_solver(self):
+        self.bench("--spheres", "200", "--repeat", "1", "--precision", "mixed", "--threads", "2",
+                   "--report", "bench.json")
+        report = self.json("bench.json")
+        self.assertEqual((report["precision"], report["threads"]), ("mixed", 2))
+        self.assertLess(report["rows"][0]["residual"], 1e-9)
+        self.assertGreater(report["rows"][0]["residual"], 1e-14)
 
     def test_a_fit_through_two_sizes_gives_their_medians(self):
         self.bench("--spheres", "50,200", "--repeat", "1", "--report", "bench.json")
@@ -51,6 +61,8 @@ class Bench(CommandTest):
                                 (["--spheres", "100", "--predict", "10"], "two sizes"),
                                 (["--repeat", "0"], "--repeat"),
                                 (["--solver", "none"], "cholmod"),
+                                (["--precision", "half"], "mixed"),
+                                (["--threads", "0"], "--threads"),
                                 (["--report", "no/such/file.json"], "no/such")):
             result = self.run_pfv("bench", *arguments)
             self.assertEqual(result.returncode, 2, arguments)

@@ -51,7 +51,7 @@ inline std::string refusal(const std::function<void()>& action) {
   return {};
 }
 
-inline void expect_one_line_with(const std::string& message, const std::string& part) {
+inline void expect_line(const std::string& message, const std::string& part) {
   EXPECT_NE(message.find(part), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }

@@ -14,7 +14,7 @@
 
 /// Random beds in the unit cube whose spheres neither overlap nor cross a wall: small numbers of
 /// spheres, every pair looked at. Same arguments, same bed.
-namespace pfv::support {
+namespace support {
 
 class RandomBed {
  public:
@@ -74,9 +74,9 @@ class RandomBed {
     }
   }
 
-  PackingArrays packing() const {
-    PackingArrays packing;
-    packing.ids = Packing::Ids::LinSpaced(count(), 1, count());
+  pfv::PackingArrays packing() const {
+    pfv::PackingArrays packing;
+    packing.ids = pfv::Packing::Ids::LinSpaced(count(), 1, count());
     packing.positions.resize(3, count());
     packing.radii.resize(count());
     for (int k = 0; k < count(); ++k) {
@@ -141,7 +141,7 @@ class RandomBed {
 
 struct NamedBed {
   std::string name;
-  PackingArrays packing;
+  pfv::PackingArrays packing;
   bool periodic;
 };
 
@@ -153,20 +153,20 @@ inline std::vector<double> graded_radii(int spheres, double ratio) {
   return radii;
 }
 
-inline PackingArrays bed_between_walls(std::vector<double> radii, double solid_fraction) {
+inline pfv::PackingArrays bed_between_walls(std::vector<double> radii, double solid_fraction) {
   RandomBed bed(std::move(radii), solid_fraction, false, 1);
   bed.push_apart(0.002, 20000);
   bed.set_smallest_gap(0.02);
   return bed.packing();
 }
 
-inline PackingArrays without_the_middle(const PackingArrays& packing, double radius) {
+inline pfv::PackingArrays without_the_middle(const pfv::PackingArrays& packing, double radius) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < packing.radii.size(); ++k)
     if ((packing.positions.col(k).array() - 0.5).matrix().norm() > radius) kept.push_back(k);
-  PackingArrays rest;
+  pfv::PackingArrays rest;
   const auto n = static_cast<Eigen::Index>(kept.size());
-  rest.ids = Packing::Ids::LinSpaced(n, 1, n);
+  rest.ids = pfv::Packing::Ids::LinSpaced(n, 1, n);
   rest.positions = packing.positions(Eigen::all, kept);
   rest.radii = packing.radii(kept);
   return rest;
@@ -174,7 +174,7 @@ inline PackingArrays without_the_middle(const PackingArrays& packing, double rad
 
 /// Equal hard spheres in a periodic cell, stirred at a solid fraction of 0.5 or less; denser ones are
 /// compressed from there too fast to crystallise, and stirred again.
-inline PackingArrays periodic_bed(double solid_fraction, std::uint64_t seed) {
+inline pfv::PackingArrays periodic_bed(double solid_fraction, std::uint64_t seed) {
   RandomBed bed(std::vector<double>(300, 1.0), std::min(solid_fraction, 0.5), true, seed);
   bed.push_apart(1e-3, 5000);
   if (solid_fraction > 0.5) {
@@ -195,7 +195,7 @@ inline std::vector<NamedBed> random_beds() {
   std::vector<NamedBed> beds;
   std::vector<double> two_sizes(76, 0.25);
   std::fill_n(two_sizes.begin(), 6, 1.0);
-  const PackingArrays fifty_four = bed_between_walls(graded_radii(54, 2.0), 0.5);
+  const pfv::PackingArrays fifty_four = bed_between_walls(graded_radii(54, 2.0), 0.5);
   beds.push_back({"bed_25", bed_between_walls(graded_radii(25, 2.0), 0.46), false});
   beds.push_back({"bed_54", fifty_four, false});
   beds.push_back({"bed_200", bed_between_walls(graded_radii(200, 2.0), 0.54), false});
@@ -207,4 +207,4 @@ inline std::vector<NamedBed> random_beds() {
   return beds;
 }
 
-}  // namespace pfv::support
+}  // namespace support

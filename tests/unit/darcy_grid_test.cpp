@@ -345,27 +345,27 @@ TEST(DarcyGrid, RefusesWhatItCannotUse) {
       flow.evaluate(cubic(2).view());
     });
   };
-  using support::expect_one_line_with;
+  using support::expect_line;
   pfv::Fluid compressible;
   compressible.bulk_modulus = 1e9;
-  expect_one_line_with(refusal({}, compressible, grid_of(1, 1, 1), {}), "no bulk modulus");
+  expect_line(refusal({}, compressible, grid_of(1, 1, 1), {}), "no bulk modulus");
   pfv::Box periodic;
   periodic.periodic[0] = true;
-  expect_one_line_with(refusal(periodic, {}, grid_of(1, 1, 1), {}), "no periodic axes");
+  expect_line(refusal(periodic, {}, grid_of(1, 1, 1), {}), "no periodic axes");
   pfv::Options yade;
   yade.partition = pfv::Partition::yade;
   yade.conductance = pfv::ConductanceLaw::hydraulic_radius;  // YADE's
-  expect_one_line_with(refusal({}, {}, grid_of(1, 1, 1), yade), "no partition");
-  expect_one_line_with(refusal({}, {}, grid_of(1, 0, 1), {}), "whole number >= 1");
-  expect_one_line_with(refusal({}, {}, grid_of(2000, 2000, 2000), {}), "too many");
+  expect_line(refusal({}, {}, grid_of(1, 1, 1), yade), "no partition");
+  expect_line(refusal({}, {}, grid_of(1, 0, 1), {}), "whole number >= 1");
+  expect_line(refusal({}, {}, grid_of(2000, 2000, 2000), {}), "too many");
   pfv::Box fed;
   fed[Face::xlo].boundary = Boundary::flux(1.0);
-  expect_one_line_with(refusal(fed, {}, grid_of(1, 1, 1), {}), "nothing determines the pressure");
+  expect_line(refusal(fed, {}, grid_of(1, 1, 1), {}), "nothing determines the pressure");
   fed[Face::xhi].boundary = Boundary::pressure(0.0);
   fed.patches.push_back({Face::xlo, {-1.0, 2.0, -1.0, 2.0}, Boundary::sealed()});
-  expect_one_line_with(refusal(fed, {}, grid_of(2, 2, 2), {}), "has no cell to enter");
+  expect_line(refusal(fed, {}, grid_of(2, 2, 2), {}), "has no cell to enter");
   DarcyGrid fresh(pfv::Box{}, pfv::Fluid{}, grid_of(1, 1, 1));
-  expect_one_line_with(support::refusal([&] { fresh.report(); }), "holds no result");
+  expect_line(support::refusal([&] { fresh.report(); }), "holds no result");
 }
 
 }  // namespace

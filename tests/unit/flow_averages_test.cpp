@@ -29,9 +29,9 @@ TEST(FlowAverages, EachPlaneCarriesTheInflow) {
   for (const double z : {0.0, 0.01, 0.2, 0.5, 0.77, 0.99, 1.0})
     EXPECT_NEAR(flow.plane_flux(2, z) / inflow, 1.0, 1e-10) << z;
   EXPECT_LT(std::abs(flow.plane_flux(0, 0.5)), 0.2 * inflow);
-  expect_one_line_with(refusal([&] { flow.plane_flux(2, 1.5); }), "outside the box");
-  expect_one_line_with(refusal([&] { flow.plane_flux(3, 0.5); }), "axis");
-  expect_one_line_with(refusal([&] { flow.slice_means(2, 3.0, 4.0); }), "no pore");
+  expect_line(refusal([&] { flow.plane_flux(2, 1.5); }), "outside the box");
+  expect_line(refusal([&] { flow.plane_flux(3, 0.5); }), "axis");
+  expect_line(refusal([&] { flow.slice_means(2, 3.0, 4.0); }), "no pore");
 }
 
 // In a lattice all layers are alike, and the flow goes straight up.
@@ -47,7 +47,9 @@ TEST(FlowAverages, VelocitiesAroundTheSpheresOfALatticeAreEqual) {
     EXPECT_NEAR(velocities(0, k) / middle, 0.0, 1e-9);
     EXPECT_NEAR(velocities(1, k) / middle, 0.0, 1e-9);
     const double z = packing.positions(2, k);
-    if (z > 1.0 / n && z < 1.0 - 1.0 / n) EXPECT_NEAR(velocities(2, k) / middle, 1.0, 1e-9);
+    if (z > 1.0 / n && z < 1.0 - 1.0 / n) {
+      EXPECT_NEAR(velocities(2, k) / middle, 1.0, 1e-9);
+    }
   }
 }
 

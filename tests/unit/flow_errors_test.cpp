@@ -47,9 +47,9 @@ TEST(CutOffPores, WhoseVolumeChangesAreRefusedByTheirSpheres) {
   auto packing = closed_tetrahedron();
   packing.velocities = packing.positions.array() - 0.5;  // outwards
   const std::string message = refusal([&] { flow.evaluate(packing.view()); });
-  expect_one_line_with(message, "spheres 1, 2, 3, 4");
-  expect_one_line_with(message, "(0.5, 0.5, 0.5)");
-  expect_one_line_with(message, "cut off");
+  expect_line(message, "spheres 1, 2, 3, 4");
+  expect_line(message, "(0.5, 0.5, 0.5)");
+  expect_line(message, "cut off");
 }
 
 TEST(CutOffPores, ThatOnlyTravelAreAtRest) {
@@ -87,7 +87,7 @@ TEST(ClosedLayer, RefusesAFluxThatCannotLeave) {
   pfv::Box box = upward_box(pfv::Wall::no_slip);
   box[pfv::Face::zlo].boundary = pfv::Boundary::flux(1e-3);
   pfv::Flow whole_face(box, viscosity_one());
-  expect_one_line_with(refusal([&] { whole_face.evaluate(packing.view()); }), "cut off");
+  expect_line(refusal([&] { whole_face.evaluate(packing.view()); }), "cut off");
 
   // through a patch: the cut-off set then has pores of its own beside those of the flux
   box[pfv::Face::zlo].boundary = pfv::Boundary::sealed();
@@ -98,7 +98,7 @@ TEST(ClosedLayer, RefusesAFluxThatCannotLeave) {
     inlet.boundary = pfv::Boundary::flux(1e-3);
     box.patches = {inlet};
     pfv::Flow patch(box, viscosity_one());
-    expect_one_line_with(refusal([&] { patch.evaluate(packing.view()); }), "cut off");
+    expect_line(refusal([&] { patch.evaluate(packing.view()); }), "cut off");
   }
 }
 
@@ -118,31 +118,31 @@ TEST(NoPressureAnywhere, IsRefusedWithMovingGrainsFacesOrAFlux) {
   };
   pfv::Box box;
   box[pfv::Face::zhi].velocity = -1.0;
-  expect_one_line_with(refused(box), "nothing determines the pressure");
+  expect_line(refused(box), "nothing determines the pressure");
   box[pfv::Face::zhi].velocity = 0.0;
   box[pfv::Face::zlo].boundary = pfv::Boundary::flux(1.0);
-  expect_one_line_with(refused(box), "the fluid cannot leave");
+  expect_line(refused(box), "the fluid cannot leave");
   packing.velocities = Eigen::Matrix3Xd::Constant(3, 20, 0.1);
-  expect_one_line_with(refused(pfv::Box{}), "nothing determines the pressure");
+  expect_line(refused(pfv::Box{}), "nothing determines the pressure");
 }
 
 TEST(FlowCalls, RefuseWhatTheyCannotUse) {
   const auto packing = random_packing(20, 0.05, 0.1, 2);
   pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
-  expect_one_line_with(refusal([&] { flow.forces(); }), "no result");
-  expect_one_line_with(refusal([&] { flow.step(packing.view(), 0.0); }), "time step");
-  expect_one_line_with(refusal([&] { flow.step(packing.view(), std::nan("")); }), "time step");
+  expect_line(refusal([&] { flow.forces(); }), "no result");
+  expect_line(refusal([&] { flow.step(packing.view(), 0.0); }), "time step");
+  expect_line(refusal([&] { flow.step(packing.view(), std::nan("")); }), "time step");
   flow.evaluate(packing.view());
-  expect_one_line_with(refusal([&] { flow.pressure_at({0.5, 0.5, 1.5}); }), "outside");
-  expect_one_line_with(refusal([&] { flow.plane_pressure(2, 1.5); }), "cuts no pore");
-  expect_one_line_with(refusal([&] { flow.time_step_limit(Eigen::VectorXd::Ones(3)); }),
+  expect_line(refusal([&] { flow.pressure_at({0.5, 0.5, 1.5}); }), "outside");
+  expect_line(refusal([&] { flow.plane_pressure(2, 1.5); }), "cuts no pore");
+  expect_line(refusal([&] { flow.time_step_limit(Eigen::VectorXd::Ones(3)); }),
                        "masses");
-  expect_one_line_with(refusal([&] { flow.time_step_limit(Eigen::VectorXd::Zero(20)); }),
+  expect_line(refusal([&] { flow.time_step_limit(Eigen::VectorXd::Zero(20)); }),
                        "mass");
   pfv::Fluid fluid = viscosity_one();
   fluid.bulk_modulus = 1.0;
   pfv::Flow compressible(upward_box(pfv::Wall::no_slip), fluid);
-  expect_one_line_with(refusal([&] { compressible.evaluate(packing.view()); }), "time step");
+  expect_line(refusal([&] { compressible.evaluate(packing.view()); }), "time step");
 }
 
 TEST(FlowCalls, HoldNoResultAfterAThrowAndRecoverFromIt) {
@@ -151,8 +151,8 @@ TEST(FlowCalls, HoldNoResultAfterAThrowAndRecoverFromIt) {
   const Eigen::Matrix3Xd good = flow.evaluate(packing.view()).total;
   const double x = packing.positions(0, 4);
   packing.positions(0, 4) = std::nan("");
-  expect_one_line_with(refusal([&] { flow.evaluate(packing.view()); }), "sphere 5");
-  expect_one_line_with(refusal([&] { flow.forces(); }), "no result");
+  expect_line(refusal([&] { flow.evaluate(packing.view()); }), "sphere 5");
+  expect_line(refusal([&] { flow.forces(); }), "no result");
   packing.positions(0, 4) = x;
   EXPECT_TRUE(flow.evaluate(packing.view()).total == good);
 }
@@ -165,19 +165,19 @@ TEST(BadPackings, AreRefusedBySphere) {
     return refusal([&] { flow.evaluate(packing.view()); });
   };
   using Arrays = pfv::PackingArrays;
-  expect_one_line_with(refused([](Arrays& p) { p.radii[2] = 0.0; }), "sphere 3");
-  expect_one_line_with(refused([](Arrays& p) { p.radii[2] = -1.0; }), "sphere 3");
-  expect_one_line_with(refused([](Arrays& p) { p.positions(1, 6) = 1.0; }), "sphere 7");
-  expect_one_line_with(refused([](Arrays& p) { p.positions(1, 6) = 1e300; }), "sphere 7");
-  expect_one_line_with(refused([](Arrays& p) { p.ids[6] = 3; }), "id 3");
-  expect_one_line_with(
+  expect_line(refused([](Arrays& p) { p.radii[2] = 0.0; }), "sphere 3");
+  expect_line(refused([](Arrays& p) { p.radii[2] = -1.0; }), "sphere 3");
+  expect_line(refused([](Arrays& p) { p.positions(1, 6) = 1.0; }), "sphere 7");
+  expect_line(refused([](Arrays& p) { p.positions(1, 6) = 1e300; }), "sphere 7");
+  expect_line(refused([](Arrays& p) { p.ids[6] = 3; }), "id 3");
+  expect_line(
       refused([](Arrays& p) { p.positions.col(6) = p.positions.col(1); }), "have the same centre");
-  expect_one_line_with(refused([](Arrays& p) { p.radii.resize(3); }), "different lengths");
-  expect_one_line_with(refused([](Arrays& p) {
+  expect_line(refused([](Arrays& p) { p.radii.resize(3); }), "different lengths");
+  expect_line(refused([](Arrays& p) {
     p.velocities = Eigen::Matrix3Xd::Zero(3, 20);
     p.velocities(0, 9) = std::nan("");
   }), "sphere 10");
-  expect_one_line_with(refused([](Arrays& p) { p = packing_of({}); }), "no spheres");
+  expect_line(refused([](Arrays& p) { p = packing_of({}); }), "no spheres");
 }
 
 }  // namespace

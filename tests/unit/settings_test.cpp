@@ -3,6 +3,7 @@
 #include "pfv/error.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
+#include "support/boxes.hpp"
 
 #include <functional>
 #include <gtest/gtest.h>
@@ -13,27 +14,14 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The message of the InputError that `action` throws; fails the test where there is none.
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const pfv::InputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return {};
-}
+using support::expect_line;
+using support::refusal;
 
 template <class Settings>
 std::string refusal_of(const std::function<void(Settings&)>& spoil) {
   Settings settings;
   spoil(settings);
   return refusal([&] { pfv::check(settings); });
-}
-
-void expect_names(const std::string& message, const std::string& part) {
-  EXPECT_NE(message.find(part), std::string::npos) << message;
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
 TEST(Names, EachFaceReadsBackAsItself) {
@@ -53,11 +41,11 @@ TEST(Names, EachOptionReadsBackAsItself) {
 }
 
 TEST(Names, AnUnknownNameIsRefusedWithTheListOfThoseThatExist) {
-  expect_names(refusal([] { pfv::solver_named("pardiso"); }), "auto, cholmod, klu2");
-  expect_names(refusal([] { pfv::ordering_named(""); }), "auto, geometric, metis, amd");
-  expect_names(refusal([] { pfv::conductance_law_named("Hydraulic_radius"); }),
+  expect_line(refusal([] { pfv::solver_named("pardiso"); }), "auto, cholmod, klu2");
+  expect_line(refusal([] { pfv::ordering_named(""); }), "auto, geometric, metis, amd");
+  expect_line(refusal([] { pfv::conductance_law_named("Hydraulic_radius"); }),
                "hydraulic_radius, effective_radius");
-  expect_names(refusal([] { pfv::face_named("xmid"); }), "xlo, xhi, ylo, yhi, zlo, zhi");
+  expect_line(refusal([] { pfv::face_named("xmid"); }), "xlo, xhi, ylo, yhi, zlo, zhi");
 }
 
 TEST(Names, AValueOutsideItsEnumerationIsRefused) {
@@ -76,11 +64,11 @@ TEST(CheckBox, TakesTheUnitCubeWithAnyKindOfBoundary) {
 
 TEST(CheckBox, RefusesFlatInvertedOrInfiniteEdges) {
   using pfv::Box;
-  expect_names(refusal_of<Box>([](Box& box) { box.upper[1] = 0; }), "along y is [0, 0]");
-  expect_names(refusal_of<Box>([](Box& box) { box.upper[2] = -3; }), "along z is [0, -3]");
-  expect_names(refusal_of<Box>([](Box& box) { box.lower[0] = nan; }), "along x: lower bound");
-  expect_names(refusal_of<Box>([](Box& box) { box.upper[0] = infinity; }), "upper bound is inf");
-  expect_names(refusal_of<Box>([](Box& box) {
+  expect_line(refusal_of<Box>([](Box& box) { box.upper[1] = 0; }), "along y is [0, 0]");
+  expect_line(refusal_of<Box>([](Box& box) { box.upper[2] = -3; }), "along z is [0, -3]");
+  expect_line(refusal_of<Box>([](Box& box) { box.lower[0] = nan; }), "along x: lower bound");
+  expect_line(refusal_of<Box>([](Box& box) { box.upper[0] = infinity; }), "upper bound is inf");
+  expect_line(refusal_of<Box>([](Box& box) {
                  box.lower[0] = -1.7e308;
                  box.upper[0] = 1.7e308;
                }),
@@ -89,13 +77,13 @@ TEST(CheckBox, RefusesFlatInvertedOrInfiniteEdges) {
 
 TEST(CheckBox, RefusesValuesOfAFaceThatAreNotFinite) {
   using namespace pfv;
-  expect_names(refusal_of<Box>([](Box& box) { box[Face::yhi].velocity = nan; }),
+  expect_line(refusal_of<Box>([](Box& box) { box[Face::yhi].velocity = nan; }),
                "face yhi: velocity");
-  expect_names(refusal_of<Box>([](Box& box) {
+  expect_line(refusal_of<Box>([](Box& box) {
                  box[Face::xlo].boundary = Boundary::pressure(infinity);
                }),
                "face xlo: pressure");
-  expect_names(refusal_of<Box>([](Box& box) { box[Face::zlo].boundary = Boundary::flux(nan); }),
+  expect_line(refusal_of<Box>([](Box& box) { box[Face::zlo].boundary = Boundary::flux(nan); }),
                "face zlo: flux");
 }
 
@@ -109,20 +97,20 @@ TEST(CheckBox, RefusesPatchesThatAreInvertedOrOffTheirFace) {
       box.patches.push_back({face, rectangle, Boundary::pressure(0)});
     });
   };
-  expect_names(patch(Face::yhi, {0.5, 0.5, 0, 1}), "patch 2 on face yhi along x is [0.5, 0.5]");
-  expect_names(patch(Face::yhi, {0, 1, 4, 5}), "along z is [4, 5], outside its face [0, 3]");
-  expect_names(patch(Face::xlo, {2, 3, 0, 1}), "along y is [2, 3], outside its face [0, 2]");
-  expect_names(patch(Face::zlo, {0, nan, 0, 1}), "patch 2 on face zlo along x: upper bound");
+  expect_line(patch(Face::yhi, {0.5, 0.5, 0, 1}), "patch 2 on face yhi along x is [0.5, 0.5]");
+  expect_line(patch(Face::yhi, {0, 1, 4, 5}), "along z is [4, 5], outside its face [0, 3]");
+  expect_line(patch(Face::xlo, {2, 3, 0, 1}), "along y is [2, 3], outside its face [0, 2]");
+  expect_line(patch(Face::zlo, {0, nan, 0, 1}), "patch 2 on face zlo along x: upper bound");
 }
 
 TEST(CheckFluid, RefusesWhatNoFluidHas) {
   using pfv::Fluid;
-  expect_names(refusal_of<Fluid>([](Fluid& f) { f.viscosity = 0; }), "viscosity is 0");
-  expect_names(refusal_of<Fluid>([](Fluid& f) { f.viscosity = nan; }), "viscosity is nan");
-  expect_names(refusal_of<Fluid>([](Fluid& f) { f.viscosity = infinity; }), "viscosity is inf");
-  expect_names(refusal_of<Fluid>([](Fluid& f) { f.density = -1; }), "density is -1");
-  expect_names(refusal_of<Fluid>([](Fluid& f) { f.gravity[1] = nan; }), "gravity along y");
-  expect_names(refusal_of<Fluid>([](Fluid& f) { f.bulk_modulus = 0.0; }), "bulk modulus is 0");
+  expect_line(refusal_of<Fluid>([](Fluid& f) { f.viscosity = 0; }), "viscosity is 0");
+  expect_line(refusal_of<Fluid>([](Fluid& f) { f.viscosity = nan; }), "viscosity is nan");
+  expect_line(refusal_of<Fluid>([](Fluid& f) { f.viscosity = infinity; }), "viscosity is inf");
+  expect_line(refusal_of<Fluid>([](Fluid& f) { f.density = -1; }), "density is -1");
+  expect_line(refusal_of<Fluid>([](Fluid& f) { f.gravity[1] = nan; }), "gravity along y");
+  expect_line(refusal_of<Fluid>([](Fluid& f) { f.bulk_modulus = 0.0; }), "bulk modulus is 0");
   Fluid weightless;
   weightless.density = 0;
   EXPECT_NO_THROW(pfv::check(weightless));
@@ -130,19 +118,19 @@ TEST(CheckFluid, RefusesWhatNoFluidHas) {
 
 TEST(CheckOptions, RefusesWhatContradicts) {
   using pfv::Options;
-  expect_names(refusal_of<Options>([](Options& o) { o.retriangulation_strain = 0; }), "strain");
-  expect_names(refusal_of<Options>([](Options& o) { o.retriangulation_strain = nan; }), "strain");
-  expect_names(refusal_of<Options>([](Options& o) {
+  expect_line(refusal_of<Options>([](Options& o) { o.retriangulation_strain = 0; }), "strain");
+  expect_line(refusal_of<Options>([](Options& o) { o.retriangulation_strain = nan; }), "strain");
+  expect_line(refusal_of<Options>([](Options& o) {
                  o.solver = pfv::SolverKind::klu2;
                  o.ordering = pfv::OrderingKind::metis;
                }),
                "klu2");
-  expect_names(refusal_of<Options>([](Options& o) {
+  expect_line(refusal_of<Options>([](Options& o) {
                  o.forces = false;
                  o.split_forces = true;
                }),
                "need forces");
-  expect_names(refusal_of<Options>([](Options& o) { o.partition = pfv::Partition::yade; }),
+  expect_line(refusal_of<Options>([](Options& o) { o.partition = pfv::Partition::yade; }),
                "use it with the conductance law hydraulic_radius");
   refusal_of<Options>([](Options& o) { o.conductance = static_cast<pfv::ConductanceLaw>(7); });
   EXPECT_NO_THROW(pfv::check(Options{}));

@@ -88,13 +88,13 @@ TEST(ShearForces, NeedForcesAndNoPeriodicAxis) {
   pfv::Options options;
   options.shear_viscous = true;
   options.forces = false;
-  expect_one_line_with(refusal([&] { pfv::check(options); }), "need forces");
+  expect_line(refusal([&] { pfv::check(options); }), "need forces");
   options.forces = true;
   pfv::Box box;
   box.periodic = {true, true, true};
   pfv::Flow flow(box, viscosity_one(), options);
   const auto packing = lattice(Lattice::sc, 4);
-  expect_one_line_with(refusal([&] { flow.evaluate(packing.view()); }), "periodic");
+  expect_line(refusal([&] { flow.evaluate(packing.view()); }), "periodic");
 }
 
 }  // namespace
