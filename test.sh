@@ -27,7 +27,7 @@ if [ "${1:-}" = long ]; then
   "$root/run.sh" stability write
   "$root/run.sh" darcy_outlet
   "$root/doc/accuracy.py"
-  "$root/doc/error_vs_time.py" solvers thresholds coupling sizes models scaling
+  "$root/doc/error_vs_time.py" solvers thresholds coupling coupling_5000 sizes models scaling
   "$root/tests/bench/table.py"
 fi
 ctest --test-dir "$root/build" --output-on-failure -j 2

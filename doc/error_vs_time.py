@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Error against run time: measures, and writes doc/error_vs_time.md and its figures.
 
-    doc/error_vs_time.py [PART...]     about 15 CPU minutes for all parts
+    doc/error_vs_time.py [PART...]     about half a CPU hour for all parts
 
-Parts: solvers thresholds coupling sizes models scaling. A part that is not named is taken from
-build/error_vs_time, where each keeps what it measured, and measured where nothing is kept. Times are
-CPU seconds on one thread of this machine: compare them within a table.
+Parts: solvers thresholds coupling coupling_5000 sizes models scaling. The figures of a part that is
+not named are those of doc/error_vs_time.json, where each keeps what it measured. Times are CPU
+seconds on one thread of this machine: compare them within a table.
 """
 import csv
 import json
@@ -25,7 +25,8 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 BIN = pathlib.Path(os.environ.get("PFV_BIN", ROOT / "build/bin"))
-KEPT = ROOT / "build" / "error_vs_time"
+KEPT = ROOT / "build" / "error_vs_time"  # runs
+MEASURED = pathlib.Path(__file__).with_suffix(".json")  # what the page shows
 FIGURES = ROOT / "doc" / "figures"
 DATA = ROOT / "tests" / "data"
 UNIT_BOX = ["--box", "0", "1", "0", "1", "0", "1"]
@@ -170,7 +171,7 @@ def against_first(rows):
         for curve in ("p", "U"):
             difference = np.array(row[curve]) - np.array(rows[0][curve])
             row[curve + "_rms"], row[curve + "_max"] = rms(difference), float(abs(difference).max())
-    return rows
+    return [{key: value for key, value in row.items() if key not in ("p", "U")} for row in rows]
 
 
 THRESHOLDS = [1e-4, 5e-4, 1e-3, 1e-2, 5e-2, 1e9]
@@ -203,37 +204,47 @@ def write_thresholds(rows):
     return "\n".join(lines)
 
 
-COUPLINGS = [("every step", []), ("every 2nd", ["FIX=couple_every 2"]),
-             ("every 4th", ["FIX=couple_every 4"]), ("every 8th", ["FIX=couple_every 8"]),
-             ("mixed precision", ["FIX=precision mixed"])]
+COUPLINGS = [("every 2nd", "couple_every 2"), ("every 4th", "couple_every 4"),
+             ("every 8th", "couple_every 8"), ("mixed precision", "precision mixed")]
 
 
-def measure_coupling():
-    """couple_every and the time step on the consolidation under 5 kPa, against a quarter step."""
-    first = consolidation("coupling_0", "N=300")
+def couplings(part, grains, steps, words_of_fix):
+    """Rows of the consolidation under 5 kPa on one sample: at parts of the time step, then at the
+    step itself, then with words of fix pfv."""
+    first = consolidation(f"{part}_0", f"N={grains}")
     import scene  # the oedometer's, found now
-    planned = json.loads((KEPT / "oedometer" / "coupling_0_run.json").read_text())
-    step = planned["time_step"]
+    step = json.loads((KEPT / "oedometer" / f"{part}_0_run.json").read_text())["time_step"]
     rows = []
 
-    def add(name, *words):
-        same_sample(f"coupling_{len(rows) + 1}", "coupling_0")
+    def add(name, word):
+        run = f"{part}_{len(rows) + 1}"
+        same_sample(run, f"{part}_0")
         try:
-            result = consolidation(f"coupling_{len(rows) + 1}", "N=300", "KEEP=1", *words)
+            result = consolidation(run, f"N={grains}", "KEEP=1", word)
         except scene.Failure as failure:  # the fluid throws the grains about
             print(f"{name}: {failure}", flush=True)
             result = {"unstable": True}
         rows.append({"setting": name, **result})
 
-    add("time step / 4", f"TIME_STEP={step / 4:.17g}")
-    add("time step / 2", f"TIME_STEP={step / 2:.17g}")
+    for divisor in steps:
+        add(f"time step / {divisor}", f"TIME_STEP={step / divisor:.17g}")
     rows.append({"setting": "every step", **first})
-    for name, words in COUPLINGS[1:]:
-        add(name, *words)
+    for name, words in words_of_fix:
+        add(name, f"FIX={words}")
     return against_first(rows)
 
 
-def write_coupling(rows):
+def measure_coupling():
+    """couple_every and the time step with 300 grains, against a quarter step."""
+    return couplings("coupling", 300, [4, 2], COUPLINGS)
+
+
+def measure_coupling_5000():
+    """couple_every with 5000 grains, against the coupling at every step."""
+    return couplings("coupling_5000", 5000, [], COUPLINGS)
+
+
+def write_coupling(rows, name="coupling"):
     lines = ["| | p(H/2): rms, largest difference / load | U: rms, largest difference | CPU, s | "
              "CPU / dry |", "|--|--|--|--|--|"]
     for row in rows:
@@ -243,8 +254,12 @@ def write_coupling(rows):
         lines.append(f"| {row['setting']} | {100 * row['p_rms']:.3f}, {100 * row['p_max']:.3f} % | "
                      f"{100 * row['U_rms']:.3f}, {100 * row['U_max']:.3f} % | {row['cpu']:.1f} | "
                      f"{row['cpu'] / row['dry']:.2f} |")
-    draw_runs(rows, "coupling", lambda r: r["setting"])
+    draw_runs(rows, name, lambda r: r["setting"])
     return "\n".join(lines)
+
+
+def write_coupling_5000(rows):
+    return write_coupling(rows, "coupling_5000")
 
 
 def draw_runs(rows, name, label):
@@ -377,16 +392,21 @@ def save(figure, name):
 
 PARTS = {"solvers": (measure_solvers, write_solvers),
          "thresholds": (measure_thresholds, write_thresholds),
-         "coupling": (measure_coupling, write_coupling), "sizes": (measure_sizes, write_sizes),
+         "coupling": (measure_coupling, write_coupling),
+         "coupling_5000": (measure_coupling_5000, write_coupling_5000),
+         "sizes": (measure_sizes, write_sizes),
          "models": (measure_models, write_models), "scaling": (measure_scaling, write_scaling)}
 
 
-def measured(name, again):
-    kept = KEPT / f"{name}.json"
-    if again or not kept.exists():
-        print(f"measuring: {name}", flush=True)
-        kept.write_text(json.dumps(PARTS[name][0](), indent=1))
-    return json.loads(kept.read_text())
+def measured(wanted):
+    """All results: those wanted measured now, the others as the last measurement left them."""
+    results = json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
+    for name in PARTS:
+        if name in wanted or name not in results:
+            print(f"measuring: {name}", flush=True)
+            results[name] = PARTS[name][0]()
+            MEASURED.write_text(json.dumps(results, indent=1) + "\n")
+    return results
 
 
 def cheapest(rows, error, limit):
@@ -422,7 +442,7 @@ def main(words):
     if unknown:
         sys.exit(f"error_vs_time: no part {sorted(unknown)}; there are: {' '.join(PARTS)}")
     KEPT.mkdir(parents=True, exist_ok=True)
-    results = {name: measured(name, name in words) for name in PARTS}
+    results = measured(words)
     text = {name: write(results[name]) for name, (_, write) in PARTS.items()}
     page = (pathlib.Path(__file__).with_name("error_vs_time.in.md")).read_text(encoding="utf-8")
     for name in PARTS:
