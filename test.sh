@@ -22,6 +22,7 @@ ASAN_OPTIONS=detect_leaks=0 "$root/build-sanitize/bin/unit_tests" --gtest_brief=
 
 if [ "${1:-}" = long ]; then
   "$root/build/bin/fuzz" --count 10000 --seed 1
+  "$root/build/bin/fuzz" --count 10000 --seed 2
   "$root/run.sh" oedometer N=5000
   "$root/run.sh" oedometer study
   "$root/run.sh" stability write

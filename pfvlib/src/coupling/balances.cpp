@@ -51,7 +51,9 @@ Totals boundary_totals(const FlowData& flow, const std::vector<double>& inflows)
 /// displace: fluxes below the machine precision of this are round-off, not flow.
 double traffic(const FlowData& flow) {
   const PoreNetwork& network = flow.built->network;
-  double sum = flow.rates.cwiseAbs().sum();
+  double sum = flow.built->volume_rate_matrix
+                   ? gross_volume_rate(*flow.built->volume_rate_matrix, flow.rated_motion())
+                   : 0.0;
   for (int t = 0; t < network.throats(); ++t)
     sum += flow.built->conductances.value[t] *
            (std::abs(flow.relative_pressures[network.throat_pores[t][0]]) +

@@ -43,6 +43,7 @@ struct FlowData {
   int stages = 1;
   double reference = 0.0;                ///< pressure that was subtracted before solving, Pa
   Eigen::VectorXd rates;                 ///< dV/dt of each pore, m³/s
+  Eigen::Matrix3Xd mean_motion;  ///< over a staged or implicit step, of active spheres and faces; else empty
   Eigen::VectorXd storage;               ///< V^f / (K_f dt) of each pore, or empty
   Eigen::VectorXd old_pressures;         ///< at the last step, of the present pores, Pa
   Eigen::VectorXd previous_pressures;    ///< the old pressures that the last solve started from, Pa
@@ -68,6 +69,8 @@ struct FlowData {
     return force_lag.size() > 0 ? built->implicit->system.matrix : built->system.matrix;
   }
   void require_result() const;
+  /// Velocities that `rates` belong to, of active spheres and faces.
+  Eigen::Matrix3Xd rated_motion() const;
   /// Throws InputError without a result. Cost: one solve and a pass over the throats, once a call.
   const Balance& balance();
 
@@ -114,7 +117,6 @@ struct FlowData {
   void add_strain(double step);
 
   Eigen::Matrix3Xd velocities;  ///< of the active spheres
-  Eigen::Matrix3Xd mean_motion;  ///< over a staged step, of active spheres and faces; else empty
   Eigen::VectorXd sources, mean_pressures;
 };
 

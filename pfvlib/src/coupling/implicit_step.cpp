@@ -48,6 +48,13 @@ Eigen::Matrix3Xd FlowData::motion_of(const Packing& packing) const {
   return with_face_velocities(of_grains, box);
 }
 
+Eigen::Matrix3Xd FlowData::rated_motion() const {
+  if (mean_motion.cols() > 0) return mean_motion;
+  const auto spheres = static_cast<Eigen::Index>(built->grains.spheres.size());
+  return moving ? with_face_velocities(velocities, solved_box)
+                : Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, spheres + 6));
+}
+
 void FlowData::rates_of_motion(const Eigen::Matrix3Xd& motion) {
   const PhaseClock clock(seconds.assemble);
   if (!built->volume_rate_matrix)
@@ -166,7 +173,8 @@ void FlowData::run_implicit(const Packing& packing, double step, double at_time,
   force_lag = lagged;
   const Eigen::Matrix3Xd others = corrected(force_lag);
   solve(others);
-  rates_of_motion(velocities(relative_pressures, others));
+  mean_motion = velocities(relative_pressures, others);
+  rates_of_motion(mean_motion);
   refuse_isolated(built->implicit->system.isolated);
 }
 

@@ -58,16 +58,37 @@ Eigen::Matrix3Xd with_face_velocities(const Eigen::Matrix3Xd& velocities, const 
   return all;
 }
 
-Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion) {
+namespace {
+
+/// Visits (pore, area, velocity) of each mover of each pore.
+template <class Visit>
+void for_each_mover(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion,
+                    Visit&& visit) {
   const Eigen::Index walls = motion.cols() - 6;
-  Eigen::VectorXd rates = Eigen::VectorXd::Zero(matrix.rows());
   for (int pore = 0; pore < matrix.rows(); ++pore)
     for (int entry = matrix.row_begin[pore]; entry < matrix.row_begin[pore + 1]; ++entry) {
       const Vertex mover = matrix.mover[entry];
-      rates[pore] += matrix.area.col(entry).dot(
-          motion.col(is_wall(mover) ? walls + wall_number(mover) : Eigen::Index(mover)));
+      visit(pore, matrix.area.col(entry),
+            motion.col(is_wall(mover) ? walls + wall_number(mover) : Eigen::Index(mover)));
     }
+}
+
+}  // namespace
+
+Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion) {
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(matrix.rows());
+  for_each_mover(matrix, motion, [&](int pore, const auto& area, const auto& velocity) {
+    rates[pore] += area.dot(velocity);
+  });
   return rates;
+}
+
+double gross_volume_rate(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion) {
+  double sum = 0.0;
+  for_each_mover(matrix, motion, [&](int, const auto& area, const auto& velocity) {
+    sum += area.norm() * velocity.norm();
+  });
+  return sum;
 }
 
 Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
