@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files that the fix writes itself: fields for ParaView, pressure profiles."""
+"""What the fix writes itself: fields for ParaView, pressure profiles, its closing report."""
+import re
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from coupled import FLOW, CoupledTest, dump, packing, random_velocities, read_dump
+from coupled import EDGE, FLOW, CoupledTest, dump, packing, random_velocities, read_dump
 from coupled import read_thermo, restarted_head, write_data
 
 HEAD = "include in.packing\n"
@@ -140,6 +141,37 @@ class Output(CoupledTest):
         moved = vtk_to_numpy(grid.GetPointData().GetArray("displacement"))
         self.assertGreater(abs(moved).max(), 1e-9)
         self.assertTrue((moved == places[10] - places[0]).all())
+
+    def closing_permeability(self, screen):
+        """(m2, estimated error %, share of the dissipation in degenerate throats %) as printed."""
+        lines = re.findall(r"^permeability (\S+) m2  estimated error (\S+) %  "
+                           r"in degenerate throats (\S+) %$", screen, re.MULTILINE)
+        self.assertEqual(len(lines), 1, screen[-2000:])
+        return [float(word) for word in lines[0]]
+
+    def test_permeability_of_grains_at_rest_is_told_with_its_error(self):
+        write_data(self.folder, packing(4))
+        for law in ("open_throat", "hydraulic_radius"):
+            screen = self.liggghts(HEAD + f"fix flow all pfv {FLOW} conductance {law}\n" +
+                                   dump("d.dump") + "run 0\n")
+            told, error, degenerate = self.closing_permeability(screen)
+            report = self.pfv_solve("d.dump", "--face", "zlo:pressure=10", "--face",
+                                    "zhi:pressure=0", "--conductance", law)[0]
+            self.assertAlmostEqual(told / report["permeability"], 1, delta=1e-5)
+            self.assertAlmostEqual(error / (100 * report["permeability_error"]), 1, delta=0.05)
+            self.assertEqual(degenerate, 0)
+            self.assertNotIn("WARNING: the permeability", screen)
+
+    def test_permeability_outside_what_was_compared_warns(self):
+        write_data(self.folder, [(1, EDGE / 2, EDGE / 2, EDGE / 2, EDGE / 25)])
+        screen = self.liggghts(HEAD + f"fix flow all pfv {FLOW}\nrun 0\n")
+        self.closing_permeability(screen)
+        self.assertIn("WARNING: the permeability's estimated error may not hold: the solid "
+                      "fraction is 0.000268", screen)
+
+    def test_moving_grains_have_no_permeability_to_tell(self):
+        screen = self.liggghts(HEAD + f"fix flow all pfv {FLOW}\nrun 2\n")
+        self.assertNotIn("estimated error", screen)
 
     def test_asking_for_more_does_not_change_the_run(self):
         plain = HEAD + f"fix flow all pfv {FLOW}\n" + dump("d.dump") + "run 10\n"

@@ -4,9 +4,13 @@
 #include "support/matrices.hpp"
 
 #include <gtest/gtest.h>
+#include <ostream>
 #include <string>
 
 namespace pfv {
+
+static void PrintTo(SolverKind kind, std::ostream* stream) { *stream << name_of(kind); }
+
 namespace {
 
 using namespace support;
