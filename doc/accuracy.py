@@ -31,7 +31,7 @@ LATTICES = {  # centres, touching radius, K of F = 6 pi mu a K U by radius scale
     "FCC": ([(.25, .25, .25), (.75, .75, .25), (.75, .25, .75), (.25, .75, .75)], 2 ** .5 / 4,
             {1: 435, .95: 147.9, .9: 65.2, .8: 20.90, .7: 9.72})}
 OVERLAPPING = {("SC", 1.03): 1.87691e-3, ("SC", 1.06): 1.37346e-3, ("BCC", 1.03): 2.19335e-4}
-DENSITIES = (30, 40, 50, 55, 60, 63)
+DENSITIES = (30, 40, 50, 55, 60, 63, 64)
 THROUGH = ("--face", "zlo:pressure=1", "--face", "zhi:pressure=0")
 PERIODIC = ("--periodic", "x,y,z", "--gradient", "0", "0", "-1")
 

@@ -75,27 +75,27 @@ std::array<double, 2> force_errors(const std::string& bed, const std::string& wa
   return {errors[errors.size() / 2], errors.back()};
 }
 
-// Goals: K within 10 %, forces within 8 % (median) and 25 % (worst). Missed: by far shrunk spheres
-// (x 0.7, forces), by sizes 3 to 8 and 4 (forces on the small spheres), by single spheres elsewhere.
+// Goals: K within 10 %: measured within 9.2 %. Forces within 8 % (median) and 25 % (worst): missed by far
+// shrunk spheres (x 0.7), by sizes 3 to 8 and 4 (the small spheres), by single spheres elsewhere.
 TEST(Beds, OpenThroatIsRecordedBesideFiniteElements) {
-  const std::vector<Recorded> all{{"bed_24_x1", "no_slip", 1.0140, 0.053, 0.157},
-                                  {"bed_24_x1", "symmetry", 1.0937, 0.061, 0.098},
-                                  {"bed_24_x0.95", "no_slip", 1.0088, 0.052, 0.147},
-                                  {"bed_24_x0.95", "symmetry", 1.0689, 0.060, 0.110},
-                                  {"bed_24_x0.7", "no_slip", 0.8999, 0.145, 0.233},
-                                  {"bed_24_x0.7", "symmetry", 0.9882, 0.125, 0.195},
-                                  {"bed_24_x1.03", "no_slip", 0.9790, 0.0, 0.0},
-                                  {"bed_24_x1.03", "symmetry", 1.0749, 0.0, 0.0},
-                                  {"bed_24_half", "no_slip", 1.0174, 0.094, 0.211},
-                                  {"bed_24_half", "symmetry", 1.0806, 0.076, 0.272},
-                                  {"bed_24_small", "symmetry", 1.1029, 0.132, 0.499},
-                                  {"bed_25", "no_slip", 0.9636, 0.060, 0.280},
-                                  {"bed_25", "symmetry", 1.0115, 0.043, 0.168},
-                                  {"bed_54", "no_slip", 1.0586, 0.060, 0.307},
-                                  {"bed_54", "symmetry", 1.0591, 0.048, 0.147},
-                                  {"bed_two_sizes", "symmetry", 0.9734, 0.143, 0.469},
-                                  {"bed_cavity", "symmetry", 1.0353, 0.058, 0.203},
-                                  {"packing_100", "symmetry", 0.9998, 0.0, 0.0}};
+  const std::vector<Recorded> all{{"bed_24_x1", "no_slip", 0.9898, 0.053, 0.156},
+                                  {"bed_24_x1", "symmetry", 1.0604, 0.063, 0.108},
+                                  {"bed_24_x0.95", "no_slip", 0.9848, 0.054, 0.151},
+                                  {"bed_24_x0.95", "symmetry", 1.0392, 0.057, 0.109},
+                                  {"bed_24_x0.7", "no_slip", 0.9330, 0.144, 0.233},
+                                  {"bed_24_x0.7", "symmetry", 1.0310, 0.124, 0.195},
+                                  {"bed_24_x1.03", "no_slip", 0.9853, 0.0, 0.0},
+                                  {"bed_24_x1.03", "symmetry", 1.0817, 0.0, 0.0},
+                                  {"bed_24_half", "no_slip", 0.9959, 0.075, 0.167},
+                                  {"bed_24_half", "symmetry", 1.0502, 0.069, 0.205},
+                                  {"bed_24_small", "symmetry", 1.0914, 0.131, 0.427},
+                                  {"bed_25", "no_slip", 0.9459, 0.055, 0.283},
+                                  {"bed_25", "symmetry", 0.9956, 0.047, 0.167},
+                                  {"bed_54", "no_slip", 1.0239, 0.058, 0.299},
+                                  {"bed_54", "symmetry", 1.0188, 0.053, 0.149},
+                                  {"bed_two_sizes", "symmetry", 0.9685, 0.141, 0.489},
+                                  {"bed_cavity", "symmetry", 0.9996, 0.062, 0.215},
+                                  {"packing_100", "symmetry", 1.0129, 0.0, 0.0}};
   const std::vector<Row> rows = table("stokes_beds_permeability.csv");
   ASSERT_EQ(rows.size(), all.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -105,26 +105,28 @@ TEST(Beds, OpenThroatIsRecordedBesideFiniteElements) {
     ASSERT_EQ(rows[i].at("wall"), recorded.wall);
     const Solution found = solve(data_packing(recorded.bed + ".csv"), box_with(recorded.wall),
                                  ConductanceLaw::open_throat);
-    EXPECT_NEAR(found.permeability / number(rows[i], "permeability"), recorded.ratio, 1e-4);
+    const double ratio = found.permeability / number(rows[i], "permeability");
+    EXPECT_NEAR(ratio, recorded.ratio, 1e-4);
+    EXPECT_NEAR(ratio, 1.0, 0.092);
     const auto [median, worst] = force_errors(recorded.bed, recorded.wall, found.forces);
     EXPECT_NEAR(median, recorded.median, 1e-3);
     EXPECT_NEAR(worst, recorded.worst, 1e-3);
   }
 }
 
-// Goal: within 12 % from solid fraction 0.3 to 0.64. Measured within 7.8 %; the papers' law is 1.19 to
+// Goal: within 12 % from solid fraction 0.3 to 0.64. Measured within 6.8 %; the papers' law is 1.15 to
 // 2.60 times too permeable.
-TEST(Beds, OpenThroatIsWithin8PerCentOfTheCorrelationInPeriodicRandomBeds) {
-  const std::vector<std::pair<std::string, double>> all{{"30", 0.9534}, {"40", 0.9801},
-                                                        {"50", 1.0178}, {"55", 1.0251},
-                                                        {"60", 1.0486}, {"63", 1.0771}};
+TEST(Beds, OpenThroatIsWithin7PerCentOfTheCorrelationInPeriodicRandomBeds) {
+  const std::vector<std::pair<std::string, double>> all{
+      {"30", 0.9701}, {"40", 0.9760}, {"50", 0.9927}, {"55", 0.9910},
+      {"60", 1.0121}, {"63", 1.0684}, {"64", 1.0543}};
   for (const auto& [percent, recorded] : all) {
     const pfv::PackingArrays packing = data_packing("bed_periodic_" + percent + ".csv");
     EXPECT_NEAR(solid_volume(packing), 0.01 * std::stod(percent), 2e-3);
     const double ratio =
         solve(packing, cell(), ConductanceLaw::open_throat).permeability / correlation(packing);
     EXPECT_NEAR(ratio, recorded, 1e-4) << percent;
-    EXPECT_NEAR(ratio, 1.0, 0.08) << percent;
+    EXPECT_NEAR(ratio, 1.0, 0.07) << percent;
   }
 }
 
@@ -142,7 +144,7 @@ void for_each_bed(Visit&& visit) {
   for (const Row& row : table("stokes_nine_spheres.csv"))
     visit(nine_spheres(number(row, "d_over_D")), box_with(row.at("wall")),
           number(row, "permeability"));
-  for (const char* percent : {"30", "40", "50", "55", "60", "63"}) {
+  for (const char* percent : {"30", "40", "50", "55", "60", "63", "64"}) {
     const pfv::PackingArrays packing =
         data_packing("bed_periodic_" + std::string(percent) + ".csv");
     visit(packing, cell(), correlation(packing));
@@ -163,22 +165,31 @@ TEST(Beds, OpenThroatIsNowhereWorseThanTheHydraulicRadiusByMoreThan2PerCent) {
   });
 }
 
-// Goal: the estimate covers 80 % of the anchors and is not more than 3 times too large on average.
-// Measured without the lattices: 35 of 40 and 2.0 times (open throat), 35 and 1.2 (hydraulic radius).
+struct Coverage {
+  ConductanceLaw law;
+  int covered;
+  double too_large;  ///< mean estimate over mean error
+};
+
+// Goal: the estimate covers 80 % of the anchors and is not more than 3 times too large on average. Measured
+// here without the lattices, which doc/accuracy.md adds.
 TEST(Beds, TheEstimatedErrorCoversTheActualOne) {
-  for (const ConductanceLaw law : {ConductanceLaw::open_throat, ConductanceLaw::hydraulic_radius}) {
+  for (const Coverage& recorded : {Coverage{ConductanceLaw::open_throat, 39, 2.21},
+                                   Coverage{ConductanceLaw::effective_radius, 37, 1.05},
+                                   Coverage{ConductanceLaw::hydraulic_radius, 36, 1.22}}) {
     int covered = 0, all = 0;
     double actual = 0.0, estimate = 0.0;
     for_each_bed([&](const pfv::PackingArrays& packing, const pfv::Box& box, double exact) {
-      const Errors one = errors(packing, box, exact, law);
+      const Errors one = errors(packing, box, exact, recorded.law);
       covered += one.actual <= one.estimate;
       ++all;
       actual += one.actual;
       estimate += one.estimate;
     });
-    EXPECT_EQ(all, 40);
-    EXPECT_GE(covered, 35) << pfv::name_of(law);
-    EXPECT_LT(estimate / actual, 2.1) << pfv::name_of(law);
+    EXPECT_EQ(all, 41);
+    EXPECT_EQ(covered, recorded.covered) << pfv::name_of(recorded.law);
+    EXPECT_GE(covered, 0.8 * all) << pfv::name_of(recorded.law);
+    EXPECT_NEAR(estimate / actual, recorded.too_large, 0.01) << pfv::name_of(recorded.law);
   }
 }
 

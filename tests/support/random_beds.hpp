@@ -201,7 +201,7 @@ inline std::vector<NamedBed> random_beds() {
   beds.push_back({"bed_200", bed_between_walls(graded_radii(200, 2.0), 0.54), false});
   beds.push_back({"bed_two_sizes", bed_between_walls(two_sizes, 0.5), false});
   beds.push_back({"bed_cavity", without_the_middle(fifty_four, 0.27), false});
-  for (const int percent : {30, 40, 50, 55, 60, 63})
+  for (const int percent : {30, 40, 50, 55, 60, 63, 64})
     beds.push_back(
         {"bed_periodic_" + std::to_string(percent), periodic_bed(0.01 * percent, 1), true});
   return beds;

@@ -31,7 +31,10 @@ int throat_with(const Stages& s, const std::array<int, 3>& vertices) {
   return 0;
 }
 
-double openness(double gap) { return gap / (gap + 0.18); }
+double openness(double gap) {
+  const double ratio = gap / 0.18 * std::pow((gap + 0.001) / 0.18, -0.2);
+  return ratio / (1.0 + ratio);
+}
 
 double kuwabara(double c) {
   const double s = std::cbrt(c);
@@ -97,8 +100,9 @@ TEST(OpenThroat, IsTheHydraulicRadiusWhereSpheresAndSlipWallsTouch) {
 }
 
 // Stokes: a sphere of radius a in each cell of edge L lets k = L³ / (6 pi a) through, 1 - 1.76
-// c^(1/3) times that. Measured within 1.6 %.
+// c^(1/3) times that. The drag takes over slowly: measured 3.8, 2.2 and 1.2 % more than that.
 TEST(OpenThroat, IsStokesDragOnSpheresFarApart) {
+  double largest = 0.038;
   for (const double a : {0.05, 0.025, 0.0125}) {
     pfv::Options options;
     options.conductance = ConductanceLaw::open_throat;
@@ -106,24 +110,36 @@ TEST(OpenThroat, IsStokesDragOnSpheresFarApart) {
     flow.evaluate(packing_of({{0.5, 0.5, 0.5, a}}).view());
     const double c = 4.0 / 3.0 * pi * a * a * a;
     const double exact = (1.0 - 1.7601 * std::cbrt(c) + c) / (6.0 * pi * a);
-    EXPECT_NEAR(*flow.report().permeability / exact, 1.0, 0.02) << a;
+    EXPECT_NEAR(*flow.report().permeability / exact, 1.0, largest) << a;
+    largest *= 0.6;
   }
 }
 
-// Overlaps hide surface, shared among the throats around a contact by their angles there.
+// Overlaps hide surface, shared among the throats around a contact by their angles there: all of it
+// between spheres, 0.8 of it at walls.
 TEST(OpenThroat, OverlapsMakeItMorePermeableThanTheFullSpheresSurfaceWould) {
   pfv::PackingArrays packing = nine_spheres(0.0);
   packing.radii *= 1.03;
   const Stages s = stages_of(packing, upward_box(pfv::Wall::symmetry));
   const auto open = law(s), papers = law(s, ConductanceLaw::hydraulic_radius);
-  // each sphere has six caps of height r - 1/4; 0.8 of their surface and volume counts
   const double r = 0.2575, h = r - 0.25;
-  const double caps = 0.8 * 6.0 * 2.0 * pi * r * h, ball = 4.0 * pi * r * r;
-  const double lens = 0.8 * 6.0 * pi * h * h * (3.0 * r - h) / 3.0;
+  const double ball = 4.0 * pi * r * r;
   const double fluid = 0.125 - ball * r / 3.0;
-  const double growth = (1.0 + lens / fluid) / (1.0 - caps / ball);
-  for (int t = 0; t < s.network.throats(); ++t)
-    EXPECT_NEAR(open.value[t] / papers.value[t], growth * growth, 1e-10);
+  const auto growth = [&](double caps) {  // of R², where so many of a sphere's six caps count
+    const double area = caps * 2.0 * pi * r * h;
+    const double lens = caps * pi * h * h * (3.0 * r - h) / 3.0;
+    return std::pow((1.0 + lens / fluid) / (1.0 - area / ball), 2);
+  };
+  // by the walls in the throat's facets: none, one (half of the sides end there), two
+  const std::array<double, 3> expected{growth(6.0), growth(0.9 * 6.0), growth(0.8 * 6.0)};
+  std::array<int, 3> found{};
+  for (int t = 0; t < s.network.throats(); ++t) {
+    const auto& facet = s.network.facet_vertices[s.network.throat_facets[t]];
+    const auto walls = std::count_if(facet.begin(), facet.end(), pfv::is_wall);
+    EXPECT_NEAR(open.value[t] / papers.value[t], expected[walls], 1e-10);
+    ++found[walls];
+  }
+  for (const int throats : found) EXPECT_GT(throats, 0);
 }
 
 // Anything that geometry can offer gives a finite conductance of the order of S², never negative.

@@ -28,10 +28,10 @@ pfv::PackingArrays scaled(pfv::PackingArrays packing, double scale) {
   return packing;
 }
 
-// Spheres that touch between symmetry walls: nothing but the law's own 0.065.
+// Spheres that touch between symmetry walls: nothing but the law's own 0.055.
 TEST(PermeabilityError, IsTheBaseErrorWhereSpheresTouch) {
   const pfv::Report report = report_of(nine_spheres(0.0), upward_box(pfv::Wall::symmetry));
-  EXPECT_NEAR(*report.permeability_error, std::expm1(0.065), 1e-9);
+  EXPECT_NEAR(*report.permeability_error, std::expm1(0.055), 1e-9);
   EXPECT_EQ(*report.degenerate_share, 0.0);
   EXPECT_TRUE(report.outside_range.empty());
 }
@@ -67,7 +67,7 @@ TEST(PermeabilityError, ExistsWithAPermeabilityOnly) {
   cell.periodic = {true, true, true};
   const pfv::Report tensor = report_of(packing, cell);  // no gradient: of the tensor
   EXPECT_FALSE(tensor.permeability);
-  EXPECT_NEAR(*tensor.permeability_error, std::expm1(0.065), 1e-9);
+  EXPECT_NEAR(*tensor.permeability_error, std::expm1(0.055), 1e-9);
 
   pfv::Box sideways = upward_box(pfv::Wall::no_slip);
   sideways[pfv::Face::xlo].boundary = pfv::Boundary::pressure(0.5);
@@ -106,7 +106,7 @@ TEST(PermeabilityError, CountsTheDissipationOfDegenerateThroats) {
       pfv::permeability_error(s.network, s.throats, s.spheres, ConductanceLaw::open_throat, 1.0,
                               conductances, dissipation, 0.5);
   EXPECT_NEAR(error.degenerate_share, 0.25, 1e-12);
-  EXPECT_NEAR(std::log1p(error.relative), 0.75 * 0.065 + 0.25 * 0.5, 1e-9);
+  EXPECT_NEAR(std::log1p(error.relative), 0.75 * 0.055 + 0.25 * 0.5, 1e-9);
   ASSERT_EQ(error.outside_range.size(), 1u);
   EXPECT_NE(error.outside_range[0].find("degenerate throats"), std::string::npos);
 }

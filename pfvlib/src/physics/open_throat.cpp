@@ -14,15 +14,19 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double half_open_gap = 0.18;       // in sums of radii
+constexpr double openness_power = 0.8;
+constexpr double even_gap = 1e-3;            // w is linear below: round-off opens nothing
 constexpr double wall_share = 2.0 / 3.0;     // of the wall's area that the throat's own fluid meets
 constexpr double plate_kozeny = 3.0;         // Poiseuille flow between plates
-constexpr double hidden_share = 0.8;         // of what overlaps hide; the neck's wedge is stagnant
+constexpr double hidden_wall_share = 0.8;    // of the caps beyond walls
 constexpr double largest_per_area2 = 10.0;   // bound on mu g / S²
 
 /// Share of a side (between two spheres, or a sphere and a wall) that its gap has opened.
 double side_openness(double distance, double radii) {
   const double gap = std::max(0.0, distance / radii - 1.0);
-  return gap / (gap + half_open_gap);
+  const double ratio = gap / half_open_gap *
+                       std::pow((gap + even_gap) / half_open_gap, openness_power - 1.0);
+  return ratio / (1.0 + ratio);
 }
 
 double side_openness(const Spheres& spheres, int k, Vertex other) {
@@ -92,7 +96,7 @@ Hidden hidden_in_facet(const PoreNetwork& network, const Spheres& spheres, int t
                                    network.throat_offset(t) - spheres.centres.col(k);
     const double angle = std::atan2(-normal.dot(first), inwards.dot(first)) +
                          std::atan2(normal.dot(second), inwards.dot(second));
-    const double share = hidden_share * angle / (2.0 * pi);
+    const double share = (is_wall(other) ? hidden_wall_share : 1.0) * angle / (2.0 * pi);
     sum.area += share * around.area;
     sum.volume += share * around.volume;
   }

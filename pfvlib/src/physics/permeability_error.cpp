@@ -11,7 +11,7 @@ namespace pfv {
 
 namespace {
 
-constexpr double base_error = 0.065;
+constexpr double base_error = 0.055;
 constexpr double blend_error = 0.06;
 constexpr double wall_error = 0.05;
 constexpr double hidden_error = 0.8;
