@@ -22,7 +22,7 @@ constexpr double first_order_error = 0.05;  // of ln K, by what d ln K leaves ou
 constexpr double smallest_solid_fraction = 5e-4;  // simple cubic, radii x 0.1
 constexpr double largest_solid_fraction = 0.745;  // FCC, touching
 constexpr double largest_size_ratio = 10.0;       // nine spheres, d/D 0.1
-constexpr double largest_hidden_share = 0.14;     // simple cubic, radii x 1.06
+constexpr double largest_hidden_share = 0.17;     // simple cubic, radii x 1.06
 constexpr double largest_wall_share = 0.40;       // nine spheres, d/D 0.72
 // Shares of the dissipation beyond which what was not compared matters.
 constexpr double notable_degenerate = 0.01, notable_ratio = 0.05;
