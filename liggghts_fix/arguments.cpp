@@ -47,13 +47,15 @@ class Words {
 
   double number(const char* what) { return to_number(word(what), what); }
 
-  int count(const char* what) {
+  int count(const char* what, int least = 1) {
     const std::string text = word(what);
     char* end = nullptr;
     errno = 0;
     const long value = std::strtol(text.c_str(), &end, 10);
-    if (end == text.c_str() || *end != '\0' || errno != 0 || value < 1 || value > INT_MAX)
-      fail(std::string(what) + " must be a whole number > 0, not '" + text + "'");
+    if (end == text.c_str() || *end != '\0' || errno != 0 || value < least ||
+        value > INT_MAX)
+      fail(std::string(what) + " must be a whole number >" + (least == 0 ? "= 0" : " 0") + ", not '" +
+           text + "'");
     return static_cast<int>(value);
   }
 
@@ -239,6 +241,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "pressure_profile") parse_pressure_profile(words, settings);
   else if (keyword == "retriangulate")
     settings.options.retriangulation_strain = words.number("the strain");
+  else if (keyword == "rebuild_lag")
+    settings.options.rebuild_lag = words.count("the number of flow steps", 0);
   else if (keyword == "couple_every") settings.couple_every = words.count("the number of steps");
   else if (keyword == "coupling") settings.coupling = words.coupling();
   else if (keyword == "time_step_check") settings.time_step_check = words.yes_or_no();
@@ -259,7 +263,7 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else
     throw pfv::InputError("unknown keyword '" + keyword +
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
-                          "pressure_profile, retriangulate, couple_every, coupling, "
+                          "pressure_profile, retriangulate, rebuild_lag, couple_every, coupling, "
                           "time_step_check, conductance, shear_viscous, solver, tolerance, "
                           "precision, threads, output, profile and sensors");
 }
@@ -279,6 +283,11 @@ void apply_profiles(PfvSettings& settings) {
 void check_all(const PfvSettings& settings) {
   pfv::check(settings.fluid);
   pfv::check(settings.options);
+  if (settings.options.rebuild_lag > 0 && (settings.coupling == PfvCoupling::implicit ||
+                                           settings.coupling == PfvCoupling::automatic))
+    throw pfv::InputError("rebuild_lag goes with `coupling explicit` and `coupling staged`: implicit "
+                          "steps factor a matrix with the masses of the grains, which is not done in "
+                          "the background");
   if (!settings.grid) return;
   pfv::check(*settings.grid, settings.fluid, settings.options);
   if (settings.coupling != PfvCoupling::explicit_forces)

@@ -78,6 +78,11 @@ void FixPfv::print_phases() {
   std::snprintf(line, sizeof line, "residual %.3g  mass error %.3g  force balance error %.3g\n",
                 done.residual, done.mass_error, done.force_balance_error);
   text += line;
+  if (settings_.options.rebuild_lag > 0) {
+    std::snprintf(line, sizeof line, "built in the background %lld  waited for them %.4g s\n",
+                  static_cast<long long>(done.counts.background), done.wall_seconds.waited);
+    text += line;
+  }
   if (done.permeability && done.permeability_error) {  // only while all grains are at rest
     std::snprintf(line, sizeof line,
                   "permeability %.6g m2  estimated error %.2g %%  in degenerate throats %.2g %%\n",

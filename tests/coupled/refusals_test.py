@@ -63,6 +63,10 @@ class Refusals(CoupledTest):
 
     def test_strain_and_interval_not_positive(self):
         self.refuse(FLOW + " retriangulate 0", "strain", after="")
+        self.refuse(FLOW + " rebuild_lag -1", "flow steps", ">= 0", after="")
+        self.refuse(FLOW + " rebuild_lag 5 coupling implicit", "rebuild_lag", "staged", after="")
+        self.refuse(FLOW + " rebuild_lag 5 coupling auto", "rebuild_lag", "staged", after="")
+        self.refuse(FLOW + " rebuild_lag 5 model darcy_grid 1 1 1", "no rebuild lag", after="")
         self.refuse(FLOW + " couple_every 0", "couple_every", "'0'", after="")
 
     def test_output_without_its_folder(self):

@@ -54,6 +54,11 @@ class Restart(CoupledTest):
         self.assertEqual(rows[-1]["flow[5]"] - rows[0]["flow[5]"], 9)
         self.assertGreater(rows[0]["flow[5]"], 0)
 
+    def test_networks_that_are_built_in_the_background(self):
+        """One is on its way when the restart file is written: the network of that file follows."""
+        rows = self.compare(f"fix flow all pfv {FLOW} retriangulate 1e-6 rebuild_lag 3\n")
+        self.assertEqual(rows[-1]["flow[5]"] - rows[0]["flow[5]"], 2)  # begun in steps 12, 15, 18
+
     def test_restart_files_in_the_middle_of_a_run(self):
         """LIGGGHTS reckons the forces of the first step with v(n), the run itself with v(n-1/2):
         contact damping differs in the last digits there. Without contacts nothing does but the

@@ -49,6 +49,11 @@ struct Options {
   OutsideGrains outside = OutsideGrains::refuse;
   /// Accumulated pore strain at which `Flow::step` triangulates anew (thesis eqs. 5.13-5.14), > 0.
   double retriangulation_strain = 0.01;
+  /// K > 0: when that strain is reached, another thread builds the next network from the grains as
+  /// they are, while the steps go on with the old one; the K-th step after takes it up, and waits
+  /// where it must. Same bytes in every run. 0: the step itself builds it. Explicit and staged
+  /// steps.
+  int rebuild_lag = 0;
   bool forces = true;         ///< false: no force matrix is built, `Forces` stays empty
   bool split_forces = false;  ///< also the pressure and the viscous part of each sphere's force
   bool buoyancy = true;       ///< add -density V gravity to each sphere where there is gravity

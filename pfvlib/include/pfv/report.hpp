@@ -20,6 +20,7 @@ struct FaceResult {
 /// How often each piece of work was done since the Flow was made: a scene pays for nothing else.
 struct Counts {
   std::int64_t triangulate = 0, order = 0, factor = 0, solve = 0, force_matrix = 0, volume_rate = 0;
+  std::int64_t background = 0;  ///< networks that were made beside the steps (Options::rebuild_lag)
   /// Of the present network: throats whose law needed the rule for phi <= 0, gamma <= 0 or A_f <= 0;
   /// tetrahedra that were merged into another pore; pores at rest without any way to a pressure.
   std::int64_t degenerate_throats = 0, merged_pores = 0, pinned_pores = 0;
@@ -34,6 +35,7 @@ struct Seconds {
 
 struct WallSeconds {
   double total = 0;
+  double waited = 0;  ///< of it, for networks that were not ready when their step had come
   std::optional<double> step;
 };
 

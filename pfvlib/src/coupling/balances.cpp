@@ -58,8 +58,8 @@ double traffic(const FlowData& flow) {
     sum += flow.built->conductances.value[t] *
            (std::abs(flow.relative_pressures[network.throat_pores[t][0]]) +
             std::abs(flow.relative_pressures[network.throat_pores[t][1]]));
-  if (flow.storage.size() > 0)
-    sum += flow.storage.dot(flow.pressures.cwiseAbs() + flow.previous_pressures.cwiseAbs());
+  if (flow.built->storage.size() > 0)
+    sum += flow.built->storage.dot(flow.pressures.cwiseAbs() + flow.previous_pressures.cwiseAbs());
   return sum;
 }
 
@@ -146,9 +146,9 @@ Report make_report(FlowData& flow) {
   report.inflow = totals.inflow;
   report.outflow = totals.outflow;
   report.volume_rate_sum = flow.rates.sum();
-  if (flow.storage.size() > 0)
+  if (flow.built->storage.size() > 0)
     report.storage_rate =
-        flow.storage.dot(flow.pressures - flow.previous_pressures + balance.correction);
+        flow.built->storage.dot(flow.pressures - flow.previous_pressures + balance.correction);
   report.mass_error = mass_error(totals, report.volume_rate_sum, report.storage_rate, traffic(flow));
   add_permeability(report, flow, totals, balance.throat_fluxes);
   if (flow.forces.total.cols() > 0) report.force_sum = flow.forces.total.rowwise().sum();
@@ -162,6 +162,7 @@ Report make_report(FlowData& flow) {
   report.threads = flow.options.threads;
   report.seconds = flow.seconds;
   report.wall_seconds.total = flow.wall_total;
+  report.wall_seconds.waited = flow.wall_waited;
   report.peak_memory_bytes = peak_memory();
   return report;
 }

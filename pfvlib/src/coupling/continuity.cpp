@@ -30,9 +30,10 @@ Eigen::VectorXd pore_inflows(const FlowData& flow, const std::vector<double>& fl
                              const Eigen::VectorXd& correction) {
   const PoreNetwork& network = flow.built->network;
   Eigen::VectorXd inflow = flow.rates;
-  if (flow.storage.size() > 0)
-    inflow.array() += flow.storage.array() * (flow.pressures.array() -
-                                              flow.previous_pressures.array() + correction.array());
+  if (flow.built->storage.size() > 0)
+    inflow.array() += flow.built->storage.array() *
+                      (flow.pressures.array() - flow.previous_pressures.array() +
+                       correction.array());
   for (int t = 0; t < network.throats(); ++t) {
     const auto [i, j] = network.throat_pores[t];
     if (i == j) continue;  // to its own image: what would cancel here is round-off of a large flux
@@ -85,7 +86,7 @@ void FlowData::refine_pressures() {
     pressures = relative_pressures.array() + reference;
     last /= largest;
   }
-  if (!(last <= hopeless)) throw SolverError(contrast());
+  if (!(last <= hopeless)) throw SolverError(conductance_contrast(*built, fluid));
 }
 
 }  // namespace pfv

@@ -2,9 +2,7 @@
 #include "coupling/flow_data.hpp"
 
 #include "coupling/phase_clock.hpp"
-#include "network/pore_network.hpp"
 #include "pfv/error.hpp"
-#include "physics/yade_partition.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,12 +25,16 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     if (!solved) stale = true;  // after a failure the network may be no longer that of the grains
     solved = false;
     balance_.reset();
-    rebuild_if_stale(packing);
-    assemble_and_factor(step);
+    update_network(packing, step, advance);
+    factor_pressures(*built, build_settings(), step, {counts, seconds});
+    counts.pinned_pores = 0;
+    for (const Isolated& isolated : built->system.isolated)
+      counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
     stages = 1;
     force_lag.resize(0);
     mean_motion.resize(3, 0);
     refuse_shear_forces(coupling);
+    refuse_lag(coupling);
     const double at_time = advance ? time + step : time;
     if (coupling == Coupling::implicit) {
       run_implicit(packing, step, at_time, *grains);
@@ -69,12 +71,58 @@ void FlowData::require_result() const {
                      "or there was none)");
 }
 
-void FlowData::rebuild_if_stale(const Packing& packing) {
-  if (!needs_rebuild(packing)) return;
-  const bool first = counts.triangulate == 0;
-  const std::unique_ptr<BuiltNetwork> old = std::move(built);
+/// Sees to a network of the grains as they are or, with rebuild_lag, as they were not long ago.
+/// Only an advancing step begins a network in the background or takes it up, so that when that
+/// happens depends on nothing but the steps.
+void FlowData::update_network(const Packing& packing, double step, bool advance) {
+  if (is_outdated(packing)) return rebuild_now(packing);
+  if (advance && next && --steps_to_next == 0) {
+    take_up_next();
+    if (is_outdated(packing)) return rebuild_now(packing);
+  }
+  if (next || strain < options.retriangulation_strain) return;
+  if (options.rebuild_lag == 0)
+    rebuild_now(packing);
+  else if (advance)
+    begin_next(packing, step);
+}
+
+void FlowData::rebuild_now(const Packing& packing) {
+  next.reset();
   stale = true;
-  build(packing);
+  auto fresh = derive_network(packing, build_settings(), {counts, seconds});
+  packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
+  take_up(std::move(fresh));
+  stale = false;
+  strain = 0.0;
+}
+
+void FlowData::refuse_lag(Coupling coupling) const {
+  if (options.rebuild_lag > 0 && coupling == Coupling::implicit)
+    throw InputError("the implicit coupling factors a matrix with the masses of the grains, which is "
+                     "not done in the background: set rebuild_lag to 0, or take the staged coupling");
+}
+
+void FlowData::begin_next(const Packing& packing, double step) {
+  next.emplace(packing, build_settings(), step, built->volume_rate_matrix.has_value());
+  steps_to_next = options.rebuild_lag;
+  strain_before_next = strain;
+}
+
+void FlowData::take_up_next() {
+  const double start = wall_seconds();
+  std::unique_ptr<BuiltNetwork> fresh = next->take({counts, seconds});
+  wall_waited += wall_seconds() - start;
+  next.reset();
+  take_up(std::move(fresh));
+  strain -= strain_before_next;
+}
+
+/// Carries over what is kept of the old network: the pressures of a compressible fluid and those
+/// that implicit steps remember.
+void FlowData::take_up(std::unique_ptr<BuiltNetwork> fresh) {
+  const std::unique_ptr<BuiltNetwork> old = std::move(built);
+  built = std::move(fresh);
   const int pores = built->network.pores();
   const auto take_over = [&](Eigen::VectorXd& values, std::vector<double>& pending) {
     if (!pending.empty() && static_cast<int>(pending.size()) == pores)
@@ -88,13 +136,15 @@ void FlowData::rebuild_if_stale(const Packing& packing) {
   take_over(old_pressures, pending_pressures);
   take_over(lagged, pending_lagged);
   if (fluid.bulk_modulus && old_pressures.size() == 0) old_pressures.setZero(pores);
-  stale = false;
-  strain = 0.0;
-  if (!first) ++retriangulations;
+  solution.setZero(built->unknowns.count);  // no trace of the old network in what follows
+  counts.degenerate_throats = built->conductances.degenerate;
+  counts.merged_pores = built->network.cells() - pores;
+  if (old) ++retriangulations;
 }
 
-bool FlowData::needs_rebuild(const Packing& packing) const {
-  if (stale || !built || strain >= options.retriangulation_strain) return true;
+/// Whether the grains or the boundaries are others than those of the network, whatever the strain.
+bool FlowData::is_outdated(const Packing& packing) const {
+  if (stale || !built) return true;
   if (packing.size() != static_cast<Eigen::Index>(packing_ids.size()) ||
       !std::equal(packing_ids.begin(), packing_ids.end(), packing.ids.data()))
     return true;
@@ -120,78 +170,6 @@ bool FlowData::needs_rebuild(const Packing& packing) const {
   return false;
 }
 
-void FlowData::build(const Packing& packing) {
-  check(box);
-  auto fresh = std::make_unique<BuiltNetwork>();
-  {
-    const PhaseClock clock(seconds.triangulate);
-    fresh->grains = select_grains(packing, box, options.outside);
-    PoreSpace space = build_network(fresh->grains.spheres, box.lower);
-    fresh->network = std::move(space.network);
-    fresh->vertices = std::move(space.spheres);
-    ++counts.triangulate;
-  }
-  {
-    const PhaseClock clock(seconds.throats);
-    const Spheres& spheres = fresh->vertices;
-    fresh->boundaries = find_pore_boundaries(fresh->network, box);
-    fresh->throats = measure_throats(fresh->network, fresh->boundaries, spheres);
-    if (options.partition == Partition::yade)
-      apply_yade_partition(fresh->throats, fresh->network, spheres, box);
-    fresh->conductances = conductances(options.conductance, fluid.viscosity, fresh->network,
-                                       fresh->throats, spheres);
-    for (std::size_t t = 0; t < fresh->throats.conductance_factor.size(); ++t)
-      fresh->conductances.value[t] *= fresh->throats.conductance_factor[t];
-    fresh->base_area = base_areas(fresh->network, fresh->boundaries, spheres);
-    fresh->strain_volume = strain_volumes(fresh->network, fresh->throats, spheres);
-  }
-  fresh->unknowns = number_unknowns(fresh->network, fresh->boundaries, box);
-  packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
-  built = std::move(fresh);
-  counts.degenerate_throats = built->conductances.degenerate;
-  counts.merged_pores = built->network.cells() - built->network.pores();
-}
-
-void FlowData::assemble_and_factor(double step) {
-  const bool compressible = fluid.bulk_modulus.has_value();
-  if (built->solver && (!compressible || step == built->storage_dt)) return;
-  const bool new_pattern = !built->solver;
-  built->time_step_limit.reset();  // it belongs to the factor
-  built->loses_digits.reset();
-  if (built->implicit) built->implicit->yielding.resize(0);
-  {
-    const PhaseClock clock(seconds.assemble);
-    storage = compressible ? Eigen::VectorXd(storage_volumes(built->throats) /
-                                             (*fluid.bulk_modulus * step))
-                           : Eigen::VectorXd();
-    built->system =
-        assemble(built->network, built->conductances.value, built->unknowns, storage);
-    counts.pinned_pores = 0;
-    for (const Isolated& isolated : built->system.isolated)
-      counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
-  }
-  if (new_pattern) {
-    built->solver = make_solver(options, team);
-    solution.setZero(built->unknowns.count);  // no trace of the old network in what follows
-  }
-  if (built->unknowns.count > 0) {
-    if (new_pattern) {
-      const PhaseClock clock(seconds.order);
-      built->solver->order(built->system.matrix, unknown_places(*built));
-      ++counts.order;
-    }
-    const PhaseClock clock(seconds.factor);
-    try {
-      built->solver->factor(built->system.matrix);
-    } catch (const SolverError& error) {
-      built->solver.reset();
-      throw SolverError(contrast() + " (" + error.what() + ")");
-    }
-    ++counts.factor;
-  }
-  built->storage_dt = step;
-}
-
 void FlowData::update_rates(const Packing& packing) {
   moving = !at_rest(packing, box);
   refuse_undetermined(moving);
@@ -206,8 +184,7 @@ void FlowData::update_rates(const Packing& packing) {
 
 void FlowData::rates_of(const Eigen::Matrix3Xd& of_grains) {
   const PhaseClock clock(seconds.assemble);
-  if (!built->volume_rate_matrix)
-    built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
+  make_volume_rates(*built);
   ++counts.volume_rate;
   volume_rates(*built->volume_rate_matrix, of_grains, box, *team, rates);
 }
@@ -232,8 +209,8 @@ void FlowData::solve_pressures(double at_time, LinearSolver& solver) {
   impose(at_time);
   sources = -rates;
   previous_pressures = old_pressures;
-  if (storage.size() > 0)
-    sources.array() += storage.array() * (old_pressures.array() - reference);
+  if (built->storage.size() > 0)
+    sources.array() += built->storage.array() * (old_pressures.array() - reference);
   if (!box.pressure_gradient.isZero(0.0))
     sources += gradient_sources(built->network, built->conductances.value, box.pressure_gradient);
   right_hand_side(built->system, built->unknowns, box, sources, relative_pressures, right_side);
@@ -256,24 +233,6 @@ Eigen::Vector3d FlowData::buoyancy_of(int sphere) const {
   return -fluid.density * 4.0 / 3.0 * pi * r * r * r * fluid.gravity;
 }
 
-void FlowData::make_force_matrices() {
-  const int active = built->grains.spheres.size();
-  if (!built->force_matrix) {
-    built->viscous_shares =
-        viscous_shares(options.conductance, built->network, built->throats, built->vertices);
-    built->force_matrix =
-        force_matrix(built->network, built->throats, built->viscous_shares, active, {true, true});
-    ++counts.force_matrix;
-    if (options.split_forces)
-      built->pressure_force_matrix = force_matrix(built->network, built->throats,
-                                                  built->viscous_shares, active, {true, false});
-    if (options.shear_viscous)
-      built->shear_pairs = shear_pairs(built->network, built->throats, built->vertices);
-    if (options.sphere_pressure)
-      built->surface_pressure = surface_pressure(built->network, built->vertices, active);
-  }
-}
-
 /// S p of the active spheres and the walls.
 void FlowData::multiply_forces(const ForceMatrix& matrix, ForceParts parts,
                                Eigen::Matrix3Xd& result) {
@@ -286,7 +245,7 @@ void FlowData::multiply_forces(const ForceMatrix& matrix, ForceParts parts,
 
 void FlowData::compute_forces(const Packing& packing) {
   const PhaseClock clock(seconds.forces);
-  make_force_matrices();
+  make_force_matrices(*built, options, counts);
   const std::vector<int>& columns = built->grains.columns;
   const auto active = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index n = packing.size();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "coupling/built_network.hpp"
+#include "coupling/background_rebuild.hpp"
 #include "pfv/flow.hpp"
+
+#include <optional>
 
 namespace pfv {
 
@@ -30,11 +32,14 @@ struct FlowData {
 
   std::unique_ptr<BuiltNetwork> built;
   bool stale = true;
+  std::optional<BackgroundRebuild> next;  ///< the network that comes after `built`
+  int steps_to_next = 0;                  ///< until it is taken up
+  double strain_before_next = 0.0;        ///< had accumulated when it was begun
   double time = 0.0, strain = 0.0;
   std::int64_t retriangulations = 0;
   Counts counts;
   Seconds seconds;
-  double wall_total = 0.0;
+  double wall_total = 0.0, wall_waited = 0.0;
 
   // of the last call
   bool solved = false;
@@ -44,7 +49,6 @@ struct FlowData {
   double reference = 0.0;                ///< pressure that was subtracted before solving, Pa
   Eigen::VectorXd rates;                 ///< dV/dt of each pore, m³/s
   Eigen::Matrix3Xd mean_motion;  ///< over a staged or implicit step, of active spheres and faces; else empty
-  Eigen::VectorXd storage;               ///< V^f / (K_f dt) of each pore, or empty
   Eigen::VectorXd old_pressures;         ///< at the last step, of the present pores, Pa
   Eigen::VectorXd previous_pressures;    ///< the old pressures that the last solve started from, Pa
   Eigen::VectorXd relative_pressures;    ///< minus the reference, Pa
@@ -77,13 +81,15 @@ struct FlowData {
  private:
   std::optional<Balance> balance_;
 
-  void rebuild_if_stale(const Packing& packing);
-  bool needs_rebuild(const Packing& packing) const;
-  void build(const Packing& packing);
+  BuildSettings build_settings() const { return {box, fluid, options, team}; }
+  void update_network(const Packing& packing, double step, bool advance);
+  bool is_outdated(const Packing& packing) const;
+  void rebuild_now(const Packing& packing);
+  void begin_next(const Packing& packing, double step);
+  void take_up_next();
+  void take_up(std::unique_ptr<BuiltNetwork> fresh);
   void refuse_undetermined(bool moving_now) const;
   void refuse_isolated(const std::vector<Isolated>& held) const;
-  std::string contrast() const;
-  void assemble_and_factor(double step);
   void update_rates(const Packing& packing);
   void rates_of(const Eigen::Matrix3Xd& of_grains);
   void rates_of_motion(const Eigen::Matrix3Xd& motion);
@@ -94,10 +100,10 @@ struct FlowData {
   /// keeps them. Throws SolverError where that does not converge.
   void refine_pressures();
   Eigen::Vector3d buoyancy_of(int sphere) const;
-  void make_force_matrices();
   void multiply_forces(const ForceMatrix& matrix, ForceParts parts, Eigen::Matrix3Xd& result);
   void compute_forces(const Packing& packing);
   void refuse_shear_forces(Coupling coupling) const;
+  void refuse_lag(Coupling coupling) const;
   void add_shear_forces(const Packing& packing);
   /// 3 x (active spheres + 6): of these velocities of active spheres and faces; none where switched off.
   Eigen::Matrix3Xd shear_forces_of(const Eigen::Matrix3Xd& motion) const;

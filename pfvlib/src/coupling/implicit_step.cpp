@@ -57,8 +57,7 @@ Eigen::Matrix3Xd FlowData::rated_motion() const {
 
 void FlowData::rates_of_motion(const Eigen::Matrix3Xd& motion) {
   const PhaseClock clock(seconds.assemble);
-  if (!built->volume_rate_matrix)
-    built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
+  make_volume_rates(*built);
   ++counts.volume_rate;
   rates = volume_rates(*built->volume_rate_matrix, motion);
 }
@@ -99,8 +98,7 @@ Eigen::Matrix3Xd FlowData::held_forces(const GrainDynamics& grains) const {
 
 /// A = G + E (dt/m) E^T, factored anew where dt or a mass has changed.
 void FlowData::factor_implicit(const Eigen::RowVectorXd& per_mass) {
-  if (!built->volume_rate_matrix)
-    built->volume_rate_matrix = volume_rate_matrix(built->network, built->vertices);
+  make_volume_rates(*built);
   if (!built->implicit) {
     built->implicit.emplace();
     built->implicit->energy_forces =
@@ -139,7 +137,7 @@ void FlowData::run_implicit(const Packing& packing, double step, double at_time,
   const Eigen::RowVectorXd per_mass = yielding(grains, step);
   moving = !at_rest(packing, box) || (per_mass.array() > 0.0).any();
   refuse_undetermined(moving);
-  make_force_matrices();
+  make_force_matrices(*built, options, counts);
   factor_implicit(per_mass);
   relaxation =
       std::min(1.0, prompt_limits * time_step_limit(grains.masses, grains.pistons) / step);

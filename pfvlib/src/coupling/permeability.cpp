@@ -37,7 +37,7 @@ std::optional<double> permeability_along_gradient(const FlowData& flow,
 /// not steady or not one-dimensional.
 std::optional<double> permeability(const FlowData& flow, const Totals& totals,
                                    const std::vector<double>& fluxes) {
-  if (flow.moving || flow.storage.size() > 0) return {};
+  if (flow.moving || flow.built->storage.size() > 0) return {};
   if (!flow.solved_box.pressure_gradient.isZero(0.0))
     return permeability_along_gradient(flow, fluxes);
   const std::optional<int> axis = axis_of_flow(flow.solved_box);
@@ -57,7 +57,7 @@ struct TensorFlow {
 
 /// Absent without periodic axes, where grains move, and where other faces are open. One solve an axis, on the kept factor, for a unit gradient and no other drive.
 std::optional<TensorFlow> tensor_flow(const FlowData& flow) {
-  if (!flow.solved_box.any_periodic() || flow.moving || flow.storage.size() > 0) return {};
+  if (!flow.solved_box.any_periodic() || flow.moving || flow.built->storage.size() > 0) return {};
   // a pressure on another face excludes a gradient
   for (const auto& contact : flow.built->boundaries.contacts)
     if (boundary_of(flow.solved_box, contact.boundary).kind != Boundary::Kind::sealed) return {};

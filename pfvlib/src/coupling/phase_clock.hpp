@@ -5,18 +5,24 @@
 
 namespace pfv {
 
-/// CPU seconds of the process, all threads.
-inline double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+/// CPU seconds of the process, all threads but those that work in the background; in one of these
+/// its own.
+double cpu_seconds();
 
-inline double wall_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+double wall_seconds();
+
+/// While it lives, the thread that has made it works in the background: see cpu_seconds. One a
+/// thread.
+class BackgroundWork {
+ public:
+  BackgroundWork();
+  ~BackgroundWork();
+  BackgroundWork(const BackgroundWork&) = delete;
+  BackgroundWork& operator=(const BackgroundWork&) = delete;
+
+ private:
+  clockid_t clock_;
+};
 
 /// Adds the CPU time of its scope to a phase of the report.
 class PhaseClock {

@@ -137,6 +137,23 @@ void check_patch(const Box& box, std::size_t number) {
   check(patch.boundary, where);
 }
 
+// What may run beside another thread that steps on, and gives the same bytes there.
+void check_lag(const Options& options) {
+  if (options.rebuild_lag < 0)
+    throw InputError("the rebuild lag is " + std::to_string(options.rebuild_lag) +
+                     ": give a number of steps, or 0 for rebuilds within a step");
+  if (options.rebuild_lag == 0) return;
+  const SolverKind solver = resolved(options.solver);
+  if (solver == SolverKind::klu2 || solver == SolverKind::mumps)
+    throw InputError(std::string("the solver ") + name_of(solver) +
+                     " does not factor in the background: use the solver cholmod, or set rebuild_lag "
+                     "to 0");
+  if (options.ordering == OrderingKind::metis)
+    throw InputError("the ordering metis draws on random numbers that it shares with all threads, so "
+                     "that runs with rebuilds in the background would not repeat: use the ordering "
+                     "geometric, or set rebuild_lag to 0");
+}
+
 }  // namespace
 
 const char* name_of(Face face) {
@@ -207,6 +224,7 @@ void check(const Options& options) {
   if (!(options.retriangulation_strain > 0))  // infinite: never, as far as strain goes
     throw InputError("retriangulation strain is " + number_text(options.retriangulation_strain) +
                      ": give a number > 0");
+  check_lag(options);
   check(options.solver, options.ordering);
   if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
     throw InputError("tolerance is " + number_text(options.tolerance) +

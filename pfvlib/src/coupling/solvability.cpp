@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Boundaries and motions that leave the pressure undetermined: refused before anything is solved.
 #include "coupling/flow_data.hpp"
+#include "coupling/network_builder.hpp"
 
 #include "pfv/error.hpp"
 
@@ -57,9 +58,9 @@ void FlowData::refuse_undetermined(bool moving_now) const {
 
 /// The factor needs the digits by which what leaves a group of pores differs from what its own throats
 /// could carry: with fewer than sixteen there are none left.
-std::string FlowData::contrast() const {
-  const PoreNetwork& network = built->network;
-  const std::vector<double>& c = built->conductances.value;
+std::string conductance_contrast(const BuiltNetwork& built, const Fluid& fluid) {
+  const PoreNetwork& network = built.network;
+  const std::vector<double>& c = built.conductances.value;
   int weakest = -1, strongest = -1;
   for (int t = 0; t < network.throats(); ++t) {
     if (!(c[t] > 0.0)) continue;
@@ -72,8 +73,8 @@ std::string FlowData::contrast() const {
     for (const Vertex vertex : network.facet_vertices[network.throat_facets[t]])
       if (!is_wall(vertex)) spheres.push_back(network.vertex_sphere[vertex]);
     std::ostringstream text;
-    text << c[t] << " m3/(Pa s) near " << place_of(*built, network.throat_pores[t][0]) << " at "
-         << sphere_list(built->grains.spheres.ids, spheres);
+    text << c[t] << " m3/(Pa s) near " << place_of(built, network.throat_pores[t][0]) << " at "
+         << sphere_list(built.grains.spheres.ids, spheres);
     return text.str();
   };
   return "the conductances of the throats reach from " + name(weakest) + " to " + name(strongest) +

@@ -70,6 +70,7 @@ void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options)
   refuse_if(options.conductance != defaults.conductance, "conductance law");
   refuse_if(options.retriangulation_strain != defaults.retriangulation_strain,
             "retriangulation strain");
+  refuse_if(options.rebuild_lag != defaults.rebuild_lag, "rebuild lag");
 }
 
 std::unique_ptr<FlowModel> make_flow(const Box& box, const Fluid& fluid, const Options& options,

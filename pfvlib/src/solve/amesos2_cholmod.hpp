@@ -7,13 +7,27 @@
 #include <Amesos2.hpp>
 #include <Amesos2_SolverCore_def.hpp>  // the library instantiates it for its own solvers only
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 namespace pfv {
 
+/// Trilinos counts references without atomic operations: one thread at a time is in it.
+inline std::mutex trilinos_mutex;
+
+/// Lets others in while this thread does work of its own.
+class OutsideTrilinos {
+ public:
+  OutsideTrilinos() { trilinos_mutex.unlock(); }
+  ~OutsideTrilinos() { trilinos_mutex.lock(); }
+  OutsideTrilinos(const OutsideTrilinos&) = delete;
+  OutsideTrilinos& operator=(const OutsideTrilinos&) = delete;
+};
+
 /// CHOLMOD's supernodal LL^T as an Amesos2 solver: Debian's Amesos2 is built without it. For one
-/// rank, where matrix and vectors are used where they lie, without a copy.
+/// rank, where matrix and vectors are used where they lie, without a copy. Its callers hold
+/// `trilinos_mutex`.
 template <class Matrix, class Vector>
 class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, Vector> {
   using Base = Amesos2::SolverCore<pfv::CholmodSupernodal, Matrix, Vector>;
@@ -39,18 +53,27 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   int preOrdering_impl() { return 0; }  // the permutation is given
 
   int symbolicFactorization_impl() {
-    factor_.analyze(rows(), permutation_);
+    const SymmetricRows matrix = rows();
+    const OutsideTrilinos working;
+    factor_.analyze(matrix, permutation_);
     return 0;
   }
 
   int numericFactorization_impl() {
-    factor_.factorize(rows());
+    const SymmetricRows matrix = rows();
+    {
+      const OutsideTrilinos working;
+      factor_.factorize(matrix);
+    }
     this->setNnzLU(2 * factor_.entries());
     return 0;
   }
 
   int solve_impl(const Teuchos::Ptr<Vectors> x, const Teuchos::Ptr<const Vectors> b) const {
-    factor_.solve(Pointer::get_pointer_to_vector(b), Pointer::get_pointer_to_vector(x), *team_);
+    const double* from = Pointer::get_pointer_to_vector(b);
+    double* to = Pointer::get_pointer_to_vector(x);
+    const OutsideTrilinos working;
+    factor_.solve(from, to, *team_);
     return 0;
   }
 

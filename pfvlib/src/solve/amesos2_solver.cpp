@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -128,10 +129,24 @@ class Amesos2Solver final : public CheckedSolver {
         ordering_(ordering),
         is_mixed_(precision == Precision::mixed),
         team_(std::move(team)) {}
+  ~Amesos2Solver() override {
+    const Turn turn(trilinos_mutex);
+    amesos2_ = {};
+    solution_ = right_side_ = {};
+    matrix_ = {};
+  }
+  Amesos2Solver(const Amesos2Solver&) = delete;
+  Amesos2Solver& operator=(const Amesos2Solver&) = delete;
 
  private:
+  using Turn = std::lock_guard<std::mutex>;
+
   void analyze_pattern(const SymmetricMatrix& matrix,
                        const Eigen::Matrix3Xd& coordinates) override {
+    std::vector<int> permutation;
+    if (kind() == SolverKind::cholmod)
+      permutation = fill_reducing_ordering(ordering_, matrix, coordinates);
+    const Turn turn(trilinos_mutex);
     matrix_ = tpetra_pattern(matrix, communicator_for(kind()));
     right_side_ = Teuchos::rcp(new Vector(matrix_->getRangeMap(), 1));
     solution_ = Teuchos::rcp(new Vector(matrix_->getDomainMap(), 1));
@@ -139,7 +154,7 @@ class Amesos2Solver final : public CheckedSolver {
       amesos2_ = Amesos2::create<Matrix, Vector>("KLU2", matrix_);
     } else if (kind() == SolverKind::cholmod) {
       amesos2_ = Teuchos::rcp(new CholmodSupernodal<Matrix, Vector>(
-          matrix_, fill_reducing_ordering(ordering_, matrix, coordinates), is_mixed_, team_));
+          matrix_, std::move(permutation), is_mixed_, team_));
       if (is_mixed_) row_begin_ = matrix.row_begin;
     } else {
       return;
@@ -148,6 +163,7 @@ class Amesos2Solver final : public CheckedSolver {
   }
 
   bool has_pattern_of(const SymmetricMatrix& matrix) const override {
+    const Turn turn(trilinos_mutex);
     const auto graph = matrix_->getLocalMatrixDevice().graph;
     return matrix.column.size() == graph.entries.size() &&
            std::equal(matrix.column.begin(), matrix.column.end(), graph.entries.data()) &&
@@ -156,6 +172,7 @@ class Amesos2Solver final : public CheckedSolver {
   }
 
   void factor_values(const SymmetricMatrix& matrix) override {
+    const Turn turn(trilinos_mutex);
     std::copy(matrix.value.begin(), matrix.value.end(),
               matrix_->getLocalMatrixDevice().values.data());
 #ifdef PFV_WITH_MUMPS
@@ -165,6 +182,7 @@ class Amesos2Solver final : public CheckedSolver {
   }
 
   void solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
+    const Turn turn(trilinos_mutex);
     if (is_mixed_)
       refine(b, x);
     else

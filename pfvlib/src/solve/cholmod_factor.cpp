@@ -4,6 +4,7 @@
 #include "pfv/error.hpp"
 
 #include <cstdlib>
+#include <mutex>
 #include <omp.h>
 #include <string>
 #include <sys/mman.h>
@@ -18,15 +19,23 @@ constexpr double lost_pivot = 1e-12;
 
 /// Keeps CHOLMOD from opening a team of four threads for each supernode, as Debian's build does
 /// whatever OMP_NUM_THREADS says: supernodes are too small to gain from it, and waiting threads
-/// take the cores of the other ranks.
+/// take the cores of the other ranks. And only one factorisation of the process runs at a time: a
+/// BLAS for one thread (Debian's openblas-serial) mixes up the work space of two that call it
+/// together, and returns wrong factors.
 class OneThread {
  public:
-  OneThread() { omp_set_max_active_levels(0); }
+  OneThread() : turn_(factorisation()) { omp_set_max_active_levels(0); }
   ~OneThread() { omp_set_max_active_levels(levels_); }
   OneThread(const OneThread&) = delete;
   OneThread& operator=(const OneThread&) = delete;
 
  private:
+  static std::mutex& factorisation() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  std::lock_guard<std::mutex> turn_;
   int levels_ = omp_get_max_active_levels();
 };
 
