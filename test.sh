@@ -21,6 +21,7 @@ cmake --build "$root/build-sanitize" --target unit_tests
 ASAN_OPTIONS=detect_leaks=0 "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
 
 if [ "${1:-}" = long ]; then
+  export PFV_REBUILDS=2000
   "$root/build/bin/fuzz" --count 10000 --seed 1
   "$root/build/bin/fuzz" --count 10000 --seed 2
   "$root/run.sh" oedometer N=5000

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Full disks and killed runs: one sentence, and nothing lost that was written. Staged steps that go out
 of control."""
+import os
 import shutil
 import signal
 import subprocess
@@ -32,6 +33,20 @@ class Files(CoupledTest):
         self.refused(HEAD + f"fix flow all pfv {FLOW} profile z 4 1 /dev/full\nrun 5\n",
                      "/dev/full", "full")
 
+    @unittest.skipUnless(os.geteuid() == 0, "only root may mount a small disk")
+    def test_disk_that_fills_up_stops_the_run_and_leaves_whole_files(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "none", str(disk)],
+                                 check=False, capture_output=True)
+        if mounted.returncode:
+            self.skipTest("no small disk can be mounted here")
+        self.addCleanup(subprocess.run, ["umount", str(disk)], check=True)
+        self.refused(HEAD + f"fix flow all pfv {FLOW} output 1 disk/flow.pvd\nrun 100\n",
+                     "disk/flow", "No space left")
+        self.assertGreater(len(self.whole_files(disk / "flow.pvd")), 2)
+        self.assertEqual([f.name for f in disk.iterdir() if f.name.endswith(".part")], [])
+
     def test_file_that_outgrows_its_limit_is_named_and_none_is_left_half_written(self):
         """A disk that fills up on the way. LIGGGHTS' own MPI needs files too: the library's command."""
         grains = "".join(f"{n},{x!r},{y!r},{z!r},{r!r}\n" for n, x, y, z, r in packing(4))
@@ -57,16 +72,20 @@ class Files(CoupledTest):
         finally:
             run.send_signal(signal.SIGKILL)
             run.wait()
-        files = [entry.get("file") for entry in
-                 ElementTree.parse(collection).getroot().iter("DataSet")]
-        self.assertGreaterEqual(len(files), 20)
-        for name in files:
-            content = (self.folder / name).read_bytes()
-            self.assertTrue(content.rstrip().endswith(b"</VTKFile>"), name)
+        self.assertGreaterEqual(len(self.whole_files(collection)), 20)
         rows = (self.folder / "p.csv").read_text().split("\n")
         self.assertEqual(rows[-1], "")  # the last row is whole
         for row in rows[:-1]:
             self.assertEqual(len(row.split(",")), 5)
+
+    def whole_files(self, collection):
+        """The files of a collection; raw data make them no XML, but what is whole has its end."""
+        files = [entry.get("file") for entry in
+                 ElementTree.parse(collection).getroot().iter("DataSet")]
+        for name in files:
+            content = (collection.parent / name).read_bytes()
+            self.assertTrue(content.rstrip().endswith(b"</VTKFile>"), name)
+        return files
 
     @staticmethod
     def entries(collection):

@@ -18,13 +18,13 @@ class Restart(CoupledTest):
         """The script of a continued run: the same settings, the grains from the restart file."""
         return restarted_head() + fix + THERMO + dump("restarted.dump") + run
 
-    def compare(self, fix, first="run 10\n", run="run 10\n"):
+    def compare(self, fix, first="run 10\n", run="run 10\n", ranks=1):
         """Runs on and restarts; returns the rows of both runs after the restart file."""
         head = "include in.packing\n"
         self.liggghts(head + fix + first + "write_restart file.restart\n" + THERMO +
-                      dump("continued.dump") + run)
+                      dump("continued.dump") + run, ranks=ranks)
         continued = read_thermo((self.folder / "log.liggghts").read_text())
-        self.liggghts(self.restarted(fix, run))
+        self.liggghts(self.restarted(fix, run), ranks=ranks)
         restarted = read_thermo((self.folder / "log.liggghts").read_text())
         self.assertEqual(restarted, [row for row in continued if "flow[7]" in row])
         self.assertEqual((self.folder / "continued.dump").read_bytes(),
@@ -35,6 +35,10 @@ class Restart(CoupledTest):
         rows = self.compare(f"fix flow all pfv {FLOW}\n")
         self.assertEqual(rows[-1]["Step"], 20)
         self.assertGreater(rows[-1]["flow"], 0.0)
+
+    def test_two_ranks_write_the_same_bytes_too(self):
+        for words in ("", "bulk_modulus 1e4", "retriangulate 1e-6"):
+            self.compare(f"fix flow all pfv {FLOW} {words}\n", ranks=2)
 
     def test_compressible_pressures_are_kept(self):
         """Uneven stored pressures: a restart that lost them would begin at another mean."""

@@ -2,6 +2,7 @@
 // One to four spheres, and sets in a plane or on a line.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
+#include "support/extreme_record.hpp"
 #include "support/packings.hpp"
 
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@ pfv::Report solve(const pfv::PackingArrays& packing, pfv::Wall wall = pfv::Wall:
   const pfv::Forces& forces = flow.evaluate(packing.view());
   EXPECT_TRUE(forces.total.allFinite());
   const pfv::Report report = flow.report();
+  record_balances(report);
   EXPECT_LT(std::abs(report.mass_error), 1e-12);
   EXPECT_LT(report.force_balance_error, 1e-14);
   EXPECT_NEAR(report.pore_volume, 1.0 - solid_volume(packing), 1e-13);
@@ -85,6 +87,29 @@ TEST(FewSpheres, OnACubeMergeIntoOnePore) {
     cube.push_back({x[0], x[1], x[2], 0.1});
   }
   EXPECT_GE(solve(packing_of(cube)).counts.merged_pores, 4);
+}
+
+TEST(FewSpheres, OneInABoxAMillionTimesAsWideTakesNoVisibleForce) {
+  for (const double radius : {1e-2, 1e-4, 1e-6}) {
+    const auto packing = packing_of({{0.4, 0.5, 0.6, radius}});
+    const pfv::Report report = solve(packing);
+    EXPECT_EQ(report.pores, 8);
+    EXPECT_NEAR(report.solid_area / solid_surface(packing), 1.0, 1e-12);
+  }
+}
+
+TEST(FewSpheres, OnExactLatticesBalance) {
+  for (const Lattice kind : {Lattice::sc, Lattice::bcc, Lattice::fcc})
+    for (const double scale : {1.0, 0.9, 1.05})
+      for (const int cells : {1, 3}) {
+        const pfv::PackingArrays packing = lattice(kind, cells, scale);
+        pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
+        EXPECT_TRUE(flow.evaluate(packing.view()).total.allFinite());
+        const pfv::Report report = flow.report();
+        record_balances(report);
+        EXPECT_LT(std::abs(report.mass_error), 1e-14);
+        EXPECT_LT(report.force_balance_error, 1e-14);
+      }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Viscosities, pressures, densities and stiffnesses of fluid far from the usual ones.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
+#include "support/extreme_record.hpp"
 #include "support/packings.hpp"
 
 #include <gtest/gtest.h>
@@ -18,6 +19,7 @@ TEST(Viscosity, From1em6To1e9ScalesFluxesAlone) {
     fluid.viscosity = viscosity;
     pfv::Flow flow(upward_box(pfv::Wall::no_slip), fluid);
     const Eigen::Matrix3Xd forces = flow.evaluate(packing.view()).total;
+    record_balances(flow.report());
     return std::make_pair(flow.report(), forces);
   };
   const auto one = solve(1.0);
@@ -65,6 +67,7 @@ TEST(Pressures, DifferencesFrom1em12To1e12ScaleForcesAndFluxes) {
     pfv::Flow flow(pressure_box(pfv::Face::zlo, level + difference, pfv::Face::zhi, level,
                                 pfv::Wall::no_slip), viscosity_one());
     const Eigen::Matrix3Xd forces = flow.evaluate(packing.view()).total;
+    record_balances(flow.report());
     return std::make_pair(flow.report(), forces);
   };
   const auto one = solve(1.0, 0.0);
@@ -90,6 +93,7 @@ TEST(Densities, EqualToTheFluidsLeaveNoNetWeight) {
     box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
     pfv::Flow flow(box, fluid);
     const pfv::Forces& forces = flow.evaluate(packing.view());
+    record_balances(flow.report());
     for (int k = 0; k < packing.radii.size(); ++k) {
       const double weight = density * 4.0 / 3.0 * pi * std::pow(packing.radii[k], 3) * 9.81;
       EXPECT_LT((forces.total.col(k) - Eigen::Vector3d(0, 0, weight)).norm(), 1e-14 * weight);
@@ -112,6 +116,7 @@ TEST(SealedBox, OfAnyBulkModulusTakesTheLoad) {
     fluid.bulk_modulus = modulus;
     pfv::Flow flow(box, fluid);
     flow.step(packing.view(), dt);
+    record_balances(flow.report());
     EXPECT_NEAR(flow.mean_pressure() / (modulus * dt / fluid_volume), 1.0, tolerance) << modulus;
     EXPECT_TRUE(flow.forces().total.allFinite());
   }

@@ -2,6 +2,7 @@
 // Grains that close pores and open them again, that come and go at each step, that jump.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
+#include "support/extreme_record.hpp"
 #include "support/packings.hpp"
 
 #include <gtest/gtest.h>
@@ -22,6 +23,7 @@ void expect_sound(const pfv::Flow& flow) {
   EXPECT_TRUE(flow.forces().total.allFinite());
   EXPECT_TRUE(flow.pore_pressures().allFinite());
   const pfv::Report report = flow.report();
+  record_balances(report);
   EXPECT_LT(std::abs(report.mass_error), 1e-9);
   EXPECT_LT(report.force_balance_error, 1e-13);
 }
@@ -163,6 +165,7 @@ TEST(Swelling, UntilTheBedIsClosedAndBack) {
     flow.evaluate(packing.view());
     const double inflow = flow.report().inflow;
     EXPECT_LT(flow.report().force_balance_error, 1e-13);
+    record_balances(flow.report());
     if (step == 0) first = inflow;
     last = inflow;
     least = std::min(least, inflow);

@@ -2,6 +2,7 @@
 // Overlaps of 1 % to 99 %, spheres across faces, edges and corners, centres a hair from a face.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
+#include "support/extreme_record.hpp"
 #include "support/packings.hpp"
 
 #include <gtest/gtest.h>
@@ -19,6 +20,7 @@ pfv::Report solve(const pfv::PackingArrays& packing) {
   EXPECT_GE(flow.pore_pressures().minCoeff(), -1e-9);
   EXPECT_LE(flow.pore_pressures().maxCoeff(), 1.0 + 1e-9);
   const pfv::Report report = flow.report();
+  record_balances(report);
   EXPECT_LT(std::abs(report.mass_error), 2e-15);
   EXPECT_LT(report.force_balance_error, 1e-13);
   EXPECT_GT(report.porosity, 0.0);

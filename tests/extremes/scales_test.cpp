@@ -3,6 +3,7 @@
 // ratios.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
+#include "support/extreme_record.hpp"
 #include "support/packings.hpp"
 
 #include <gtest/gtest.h>
@@ -20,6 +21,7 @@ Result solve(const pfv::PackingArrays& packing, const pfv::Box& box) {
   pfv::Flow flow(box, viscosity_one(), hydraulic_radius());
   const Eigen::Matrix3Xd forces = flow.evaluate(packing.view()).total;
   EXPECT_TRUE(forces.allFinite());
+  record_balances(flow.report());
   return {flow.report(), forces};
 }
 
