@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every figure and table of doc/accuracy.md, from its text in doc/accuracy.in.md:  doc/accuracy.py [BUILD]
 
-Solves all packings with a reference by every law (some 200 runs of `pfv solve`, about a minute) and writes
+Solves all packings with a reference by every law (some 200 runs of `pfv solve`, some 15 seconds) and writes
 doc/accuracy.md and doc/figures/accuracy_*.png.
 """
 import csv
