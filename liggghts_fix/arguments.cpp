@@ -170,6 +170,20 @@ void parse_patch(Words& words, PfvSettings& settings) {
   settings.patches.push_back(patch);
 }
 
+/// A region has two bounds an axis, a point one place.
+void parse_region(Words& words, PfvSettings& settings, bool point) {
+  PfvRegion region;
+  for (int axis = 0; axis < 3; ++axis) {
+    region.lower[axis] = words.number(point ? "the point's coordinate" : "the region's bound");
+    region.upper[axis] = point ? region.lower[axis] : words.number("the region's bound");
+  }
+  const auto boundary = take_boundary(words);
+  if (!boundary || boundary->kind == Kind::sealed)
+    words.fail("the place must be followed by pressure P or flux Q");
+  region.boundary = *boundary;
+  settings.regions.push_back(region);
+}
+
 void parse_pressure_profile(Words& words, PfvSettings& settings) {
   PfvFace& face = settings.faces[static_cast<int>(words.face())];
   if (!words.take("cosine")) words.fail("the one profile that exists is cosine");
@@ -193,13 +207,13 @@ void parse_fields(Words& words, PfvSettings& settings) {
   settings.fields = fields;
 }
 
-void parse_profile(Words& words, PfvSettings& settings) {
+PfvProfileOutput parse_profile(Words& words) {
   PfvProfileOutput profile;
   profile.axis = words.axis();
   profile.planes = words.count("the number of planes");
   profile.every = words.count("the number of steps");
   profile.path = words.word("the file's name");
-  settings.profile = profile;
+  return profile;
 }
 
 void parse_sensors(Words& words, PfvSettings& settings) {
@@ -238,6 +252,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "model") parse_model(words, settings);
   else if (keyword == "face") parse_face(words, settings);
   else if (keyword == "patch") parse_patch(words, settings);
+  else if (keyword == "region") parse_region(words, settings, false);
+  else if (keyword == "point") parse_region(words, settings, true);
   else if (keyword == "pressure_profile") parse_pressure_profile(words, settings);
   else if (keyword == "retriangulate")
     settings.options.retriangulation_strain = words.number("the strain");
@@ -258,14 +274,16 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "threads")
     settings.options.threads = words.count("the number of threads");
   else if (keyword == "output") parse_fields(words, settings);
-  else if (keyword == "profile") parse_profile(words, settings);
+  else if (keyword == "profile") settings.profile = parse_profile(words);
+  else if (keyword == "flux_profile") settings.flux_profile = parse_profile(words);
   else if (keyword == "sensors") parse_sensors(words, settings);
   else
     throw pfv::InputError("unknown keyword '" + keyword +
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
-                          "pressure_profile, retriangulate, rebuild_lag, couple_every, coupling, "
+                          "region, point, pressure_profile, retriangulate, rebuild_lag, "
+                          "couple_every, coupling, "
                           "time_step_check, conductance, shear_viscous, solver, tolerance, "
-                          "precision, threads, output, profile and sensors");
+                          "precision, threads, output, profile, flux_profile and sensors");
 }
 
 /// A profile makes its face one of imposed pressure, which a face with another boundary is not.
@@ -290,6 +308,8 @@ void check_all(const PfvSettings& settings) {
                           "the background");
   if (!settings.grid) return;
   pfv::check(*settings.grid, settings.fluid, settings.options);
+  if (settings.flux_profile)
+    throw pfv::InputError("darcy_grid has no flux_profile: leave it away, or use the model pfv");
   if (settings.coupling != PfvCoupling::explicit_forces)
     throw pfv::InputError("darcy_grid has no staged coupling: use `coupling explicit` (the "
                           "default), or the model pfv");
@@ -360,6 +380,7 @@ std::vector<const PfvValue*> values_of(const PfvSettings& settings) {
     }
   }
   for (const PfvPatch& patch : settings.patches) values.push_back(&patch.boundary.value);
+  for (const PfvRegion& region : settings.regions) values.push_back(&region.boundary.value);
   return values;
 }
 

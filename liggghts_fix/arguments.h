@@ -49,6 +49,12 @@ struct PfvPatch {
   PfvBoundary boundary;
 };
 
+struct PfvRegion {
+  Eigen::Vector3d lower, upper;  ///< m; equal: a point
+  PfvBoundary boundary;
+};
+
+/// Rows of a quantity on equally spaced planes.
 struct PfvProfileOutput {
   int axis, planes, every;
   std::string path;
@@ -78,12 +84,13 @@ struct PfvSettings {
   std::optional<pfv::DarcyOptions> grid;  ///< absent: the pore network
   std::array<PfvFace, 6> faces;
   std::vector<PfvPatch> patches;
+  std::vector<PfvRegion> regions;
   int couple_every = 1;
   PfvCoupling coupling = PfvCoupling::explicit_forces;
   bool time_step_check = true;
   double safety = 1.0;  ///< part of the explicit limit that a step may reach
   std::optional<PfvFieldOutput> fields;
-  std::optional<PfvProfileOutput> profile;
+  std::optional<PfvProfileOutput> profile, flux_profile;
   std::optional<PfvSensorOutput> sensors;
 };
 

@@ -177,6 +177,8 @@ pfv::Box FixPfv::current_box() {
   }
   for (const PfvPatch& patch : settings_.patches)
     box.patches.push_back({patch.face, patch.rectangle, boundary_of(patch.boundary)});
+  for (const PfvRegion& region : settings_.regions)
+    box.regions.push_back({region.lower, region.upper, boundary_of(region.boundary)});
   if (variables)
     modify->addstep_compute(update->ntimestep +
                             std::max(1, settings_.couple_every - steps_since_flow_));

@@ -46,6 +46,18 @@ std::string rows_until(const std::string& path, const std::string& header, doubl
   return rows;
 }
 
+/// The time, then the quantity on each plane.
+template <class Quantity>
+std::vector<double> plane_row(const pfv::FlowModel& flow, const PfvProfileOutput& profile,
+                              const Quantity& quantity) {
+  const pfv::Box& box = flow.box();
+  const double lower = box.lower[profile.axis], upper = box.upper[profile.axis];
+  std::vector<double> row{flow.time()};
+  for (int plane = 0; plane < profile.planes; ++plane)
+    row.push_back(quantity(lower + relative_position(profile, plane) * (upper - lower)));
+  return row;
+}
+
 std::string file_name_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   return slash == std::string::npos ? path : path.substr(slash + 1);
@@ -87,12 +99,15 @@ void PfvRowFile::write_row(const std::vector<double>& values) {
 }
 
 PfvResultFiles::PfvResultFiles(const PfvSettings& settings)
-    : fields_(settings.fields), profile_(settings.profile), sensors_(settings.sensors) {
+    : fields_(settings.fields), profile_(settings.profile),
+      flux_profile_(settings.flux_profile), sensors_(settings.sensors) {
   if (fields_) {
     pfv::require_folder_of(fields_->path);
     field_schedule_ = PfvSchedule(fields_->every);
   }
   if (profile_) profile_file_.emplace(profile_->path, header_of(*profile_), profile_->every);
+  if (flux_profile_)
+    flux_file_.emplace(flux_profile_->path, header_of(*flux_profile_), flux_profile_->every);
   if (sensors_) sensor_file_.emplace(sensors_->path, header_of(*sensors_), sensors_->every);
 }
 
@@ -100,6 +115,7 @@ void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWritt
   written_ = std::move(written);
   field_schedule_.resume_after(step);
   if (profile_file_) profile_file_->resume(step, time);
+  if (flux_file_) flux_file_->resume(step, time);
   if (sensor_file_) sensor_file_->resume(step, time);
 }
 
@@ -107,6 +123,7 @@ void PfvResultFiles::write(const pfv::FlowModel& flow, const pfv::Packing& packi
                            std::int64_t step) {
   if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, step);
   if (profile_file_ && profile_file_->due(step)) profile_file_->write_row(profile_row(flow));
+  if (flux_file_ && flux_file_->due(step)) flux_file_->write_row(flux_row(flow));
   if (sensor_file_ && sensor_file_->due(step)) sensor_file_->write_row(sensor_row(flow));
 }
 
@@ -154,14 +171,17 @@ pfv::SphereFields PfvResultFiles::sphere_fields(const pfv::FlowModel& flow,
 }
 
 std::vector<double> PfvResultFiles::profile_row(const pfv::FlowModel& flow) const {
-  const pfv::Box& box = flow.box();
-  const double lower = box.lower[profile_->axis], upper = box.upper[profile_->axis];
-  std::vector<double> row{flow.time()};
-  for (int plane = 0; plane < profile_->planes; ++plane) {
-    const double place = lower + relative_position(*profile_, plane) * (upper - lower);
-    row.push_back(flow.plane_pressure(profile_->axis, place));
-  }
-  return row;
+  return plane_row(flow, *profile_, [&](double place) {
+    return flow.plane_pressure(profile_->axis, place);
+  });
+}
+
+/// Only the model with pores comes here.
+std::vector<double> PfvResultFiles::flux_row(const pfv::FlowModel& flow) const {
+  const auto& pores = dynamic_cast<const pfv::Flow&>(flow);
+  return plane_row(flow, *flux_profile_, [&](double place) {
+    return pores.plane_flux(flux_profile_->axis, place);
+  });
 }
 
 /// A sensor outside the flow box, which may shrink below it, reads the pressure of the nearest place.

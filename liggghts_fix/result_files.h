@@ -69,16 +69,17 @@ class PfvResultFiles {
  private:
   void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, std::int64_t step);
   std::vector<double> profile_row(const pfv::FlowModel& flow) const;
+  std::vector<double> flux_row(const pfv::FlowModel& flow) const;
   std::vector<double> sensor_row(const pfv::FlowModel& flow) const;
   pfv::SphereFields sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing);
   Eigen::Matrix3Xd displacements(const pfv::Packing& packing);
 
   std::optional<PfvFieldOutput> fields_;
-  std::optional<PfvProfileOutput> profile_;
+  std::optional<PfvProfileOutput> profile_, flux_profile_;
   std::optional<PfvSensorOutput> sensors_;
   PfvSchedule field_schedule_;
   std::vector<PfvWrittenStep> written_;
-  std::optional<PfvRowFile> profile_file_, sensor_file_;
+  std::optional<PfvRowFile> profile_file_, flux_file_, sensor_file_;
   std::map<std::int64_t, Eigen::Vector3d> first_places_;  ///< by tag
 };
 

@@ -92,6 +92,12 @@ Face face_of(const std::string& where, const std::string& name) {
   }
 }
 
+Boundary required_boundary(const std::string& where, const std::string& item, const char* items) {
+  const auto boundary = boundary_of(where, item_of(item));
+  if (!boundary) fail(where, "unknown item " + quoted(item) + ": use " + items);
+  return *boundary;
+}
+
 Patch patch_of(const std::string& argument) {
   const std::string where = "--patch " + quoted(argument);
   const std::vector<std::string> fields = parts(argument, ':');
@@ -102,11 +108,36 @@ Patch patch_of(const std::string& argument) {
   patch.face = face_of(where, fields[0]);
   for (std::size_t k = 0; k < rectangle.size(); ++k)
     patch.rectangle[k] = number(where, rectangle[k]);
-  const auto boundary = boundary_of(where, item_of(fields[2]));
-  if (!boundary)
-    fail(where, "unknown item " + quoted(fields[2]) + ": use pressure=P, flux=Q or sealed");
-  patch.boundary = *boundary;
+  patch.boundary = required_boundary(where, fields[2], "pressure=P, flux=Q or sealed");
   return patch;
+}
+
+/// `form`: how the argument is written, with as many names of numbers as `count`.
+std::vector<double> numbers_of(const std::string& where, const std::vector<std::string>& fields,
+                               std::size_t count, const char* form) {
+  const std::vector<std::string> texts =
+      fields.size() == 2 ? parts(fields[0], ',') : std::vector<std::string>{};
+  if (texts.size() != count) fail(where, std::string("write ") + form);
+  std::vector<double> numbers;
+  for (const std::string& text : texts) numbers.push_back(number(where, text));
+  return numbers;
+}
+
+Region region_of(const std::string& argument) {
+  const std::string where = "--region " + quoted(argument);
+  const std::vector<std::string> fields = parts(argument, ':');
+  const auto n = numbers_of(where, fields, 6, "X0,X1,Y0,Y1,Z0,Z1:ITEM");
+  return {{n[0], n[2], n[4]},
+          {n[1], n[3], n[5]},
+          required_boundary(where, fields[1], "pressure=P or flux=Q")};
+}
+
+Region point_of(const std::string& argument) {
+  const std::string where = "--point " + quoted(argument);
+  const std::vector<std::string> fields = parts(argument, ':');
+  const auto n = numbers_of(where, fields, 3, "X,Y,Z:ITEM");
+  const Eigen::Vector3d place(n[0], n[1], n[2]);
+  return {place, place, required_boundary(where, fields[1], "pressure=P or flux=Q")};
 }
 
 }  // namespace
@@ -142,6 +173,12 @@ void apply_faces(const std::vector<std::string>& arguments, Wall wall, Box& box)
 
 void apply_patches(const std::vector<std::string>& arguments, Box& box) {
   for (const std::string& argument : arguments) box.patches.push_back(patch_of(argument));
+}
+
+void apply_regions(const std::vector<std::string>& regions, const std::vector<std::string>& points,
+                   Box& box) {
+  for (const std::string& argument : regions) box.regions.push_back(region_of(argument));
+  for (const std::string& argument : points) box.regions.push_back(point_of(argument));
 }
 
 }  // namespace pfv::app

@@ -21,4 +21,8 @@ void apply_faces(const std::vector<std::string>& arguments, Wall wall, Box& box)
 /// Appends every `--patch NAME:A0,A1,B0,B1:ITEM` to the patches of `box`.
 void apply_patches(const std::vector<std::string>& arguments, Box& box);
 
+/// Appends every `--region X0,X1,Y0,Y1,Z0,Z1:ITEM`, then every `--point X,Y,Z:ITEM`.
+void apply_regions(const std::vector<std::string>& regions, const std::vector<std::string>& points,
+                   Box& box);
+
 }  // namespace pfv::app

@@ -51,6 +51,7 @@ Box box_of(const SolveArguments& arguments) {
   apply_periodic(arguments, box);
   apply_faces(arguments.faces, wall_named("--wall", arguments.wall), box);
   apply_patches(arguments.patches, box);
+  apply_regions(arguments.regions, arguments.points, box);
   check(box);
   return box;
 }
@@ -178,6 +179,14 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
                                 "along the two other axes in the order x y z, and one of\n"
                                 "pressure=P (Pa) | flux=Q (m3/s) | sealed (default: none)"))
       ->option_text("NAME:A0,A1,B0,B1:ITEM")->group(group);
+  repeatable(command.add_option("--region", arguments.regions,
+                     "pores inside the packing, for instance a well, may be given several\n"
+                                "times: extent (m) and pressure=P (Pa) | flux=Q (m3/s, positive\n"
+                                "into the pores) (default: none)"))
+      ->option_text("X0,X1,Y0,Y1,Z0,Z1:ITEM")->group(group);
+  repeatable(command.add_option("--point", arguments.points,
+                     "the pore at a place, as --region (default: none)"))
+      ->option_text("X,Y,Z:ITEM")->group(group);
   command.add_option("--periodic", arguments.periodic,
                      "axes along which the packing repeats (default: none)")
       ->delimiter(',')->allow_extra_args(false)->option_text("x,y,z")->group(group);

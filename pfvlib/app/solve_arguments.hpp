@@ -17,7 +17,7 @@ namespace pfv::app {
 /// would take "1abc" and "nan".
 struct SolveArguments {
   std::string packing;
-  std::vector<std::string> box, faces, patches, gravity, periodic, gradient;
+  std::vector<std::string> box, faces, patches, regions, points, gravity, periodic, gradient;
   std::string model = "pfv", drag;
   std::vector<std::string> cells;
   std::string wall = "no_slip", viscosity = "1e-3", density = "1000", partition, solver, ordering,

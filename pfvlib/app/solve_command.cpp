@@ -49,7 +49,9 @@ bool is_unloaded(const SolveRequest& request, const Packing& packing) {
   return std::all_of(request.box.faces.begin(), request.box.faces.end(),
                      [&](const FaceCondition& face) { return idle(face.boundary); }) &&
          std::all_of(request.box.patches.begin(), request.box.patches.end(),
-                     [&](const Patch& patch) { return idle(patch.boundary); });
+                     [&](const Patch& patch) { return idle(patch.boundary); }) &&
+         std::all_of(request.box.regions.begin(), request.box.regions.end(),
+                     [&](const Region& region) { return idle(region.boundary); });
 }
 
 void warn_of_hidden(const FlowModel& flow, const Packing& packing, std::ostream& warnings) {

@@ -86,6 +86,15 @@ class BadInput(CommandTest):
                       "zhi:0,1,2,3:sealed", "zhi:0,nan,0,1:sealed"):
             self.refuse_arguments("--patch", patch, *THROUGH_FLOW, parts=["patch"])
 
+    def test_a_region_that_is_not_understood(self):
+        for region in ("0,1,0,1,0:flux=1", "0,1,0,1,0,b:flux=1", "0,1,0,1,0,1", "0,1,0,1,2,3:flux=1",
+                       "0,1,0,1,0,1:sealed", "0,1,0,1,0,1:wall=symmetry", "0,1,0,1,1,0:flux=1"):
+            self.refuse_arguments("--region", region, *THROUGH_FLOW, parts=["region"])
+        for point in ("0,0:flux=1", "0,0,2:flux=1", "0,0,0:speed=1"):
+            self.refuse_arguments("--point", point, *THROUGH_FLOW, parts=[])
+        self.refuse_arguments("--model", "darcy_grid", "--cells", "2", "2", "2", "--point",
+                              ".5,.5,.5:flux=1", *THROUGH_FLOW, parts=["darcy_grid", "regions"])
+
     def test_numbers_out_of_range(self):
         for option, values in (("--viscosity", ("0", "-1", "nan", "inf", "thick", "1abc", "")),
                                ("--density", ("-1", "nan", "heavy")),

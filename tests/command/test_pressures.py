@@ -72,6 +72,23 @@ class Pressures(CommandTest):
         whole = self.report(*faces, "--patch", "zhi:-1,2,-1,2:pressure=1")
         self.assert_close(flux(whole, "zhi"), flux(self.report(*THROUGH_FLOW), "zhi"))
 
+    def test_a_well_inside_gives_what_leaves_through_the_lid(self):
+        for well in (["--point", ".5,.5,.5:flux=2"], ["--region", ".4,.6,.4,.6,.4,.6:flux=2"]):
+            report = self.report("--face", "zhi:pressure=0", *well)
+            opening, = report["openings"]
+            self.assertEqual(opening["name"], "region 1")
+            self.assertAlmostEqual(opening["flux"], 2.0, delta=1e-11)
+            self.assertAlmostEqual(report["faces"]["zhi"]["flux"], -2.0, delta=1e-11)
+            self.assertGreater(opening["pressure"], 0.0)
+            self.assertIsNone(report["permeability"])
+
+    def test_the_report_says_what_crosses_each_patch(self):
+        report = self.report("--face", "zlo:pressure=0", "--patch", "zhi:.4,.6,.4,.6:pressure=1")
+        opening, = report["openings"]
+        self.assertEqual(opening["name"], "patch 1 on face zhi")
+        self.assertEqual(opening["pressure"], 1.0)
+        self.assertAlmostEqual(opening["flux"] / report["inflow"], 1.0, delta=1e-12)
+
     def test_later_patches_win(self):
         faces = ["--face", "zlo:pressure=0", "--patch", "zhi:-1,2,-1,2:pressure=1"]
         sealed = self.report(*faces, "--patch", "zhi:-1,2,-1,2:sealed")

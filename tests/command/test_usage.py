@@ -5,7 +5,7 @@ import unittest
 
 from command import DENSE, UNIT_BOX, CommandTest
 
-OPTIONS = ("packing box face patch wall viscosity density gravity bulk-modulus time-step "
+OPTIONS = ("packing box face patch region point wall viscosity density gravity bulk-modulus time-step "
            "conductance solver ordering tolerance precision threads repeat forces report vtk").split()
 
 

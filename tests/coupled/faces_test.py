@@ -178,6 +178,32 @@ class Faces(CoupledTest):
         self.assertAlmostEqual(row["flow[1]"] / 1e-6, 1.0, delta=1e-9)
         self.assertAlmostEqual(row["flow[2]"] / 1e-6, 1.0, delta=1e-9)
 
+    def test_what_a_point_brings_in_rises_to_the_lid(self):
+        """A flux that follows a variable, at a place inside; planes above it carry it all."""
+        flow = ("viscosity 0.01 " + faces(zhi="pressure 0") +
+                " point 0.05 0.05 0.02 flux v_q flux_profile z 10 1 planes.csv")
+        self.liggghts(FROZEN + f"variable q equal 1e-6*(1+step)\nfix flow all pfv {flow}\n" +
+                      THERMO + "run 2\n")
+        for step, row in enumerate(self.log()):
+            self.assertAlmostEqual(row["flow[1]"] / (1e-6 * (1 + step)), 1.0, delta=1e-9)
+            self.assertAlmostEqual(row["flow[2]"] / (1e-6 * (1 + step)), 1.0, delta=1e-9)
+        header, *rows = (self.folder / "planes.csv").read_text().splitlines()
+        self.assertTrue(header.startswith("time,0.05,0.15"))
+        for step, row in enumerate(rows):
+            flows = [float(word) / (1e-6 * (1 + step)) for word in row.split(",")[1:]]
+            self.assertAlmostEqual(flows[0], 0.0, delta=1e-9)
+            for flow in flows[4:]:
+                self.assertAlmostEqual(flow, 1.0, delta=1e-9)
+
+    def test_regions_that_mean_nothing_are_refused(self):
+        for words, part in (("point 0.05 0.05 pressure 1", "coordinate"),
+                            ("region 0 1 0 1 0 1 sealed", "pressure P or flux Q"),
+                            ("point 0.05 0.05 7 flux 1", "outside the box"),
+                            ("model darcy_grid 2 2 2 point 0.05 0.05 0.05 flux 1", "regions"),
+                            ("model darcy_grid 2 2 2 flux_profile z 3 1 f.csv", "flux_profile")):
+            self.refused(FROZEN + "fix flow all pfv viscosity 0.01 " + faces(zhi="pressure 0") +
+                         f" {words}\nrun 1\n", part)
+
     def test_mesh_that_tilts_in_the_run_stops_it(self):
         self.refused(FROZEN + LID +
                      "fix turn all move/mesh mesh lid rotate origin 0. 0. 0. axis 0. 1. 0. "

@@ -67,6 +67,16 @@ struct Patch {
   Boundary boundary;
 };
 
+/// A part of the packing with a pressure or a flux of its own, for instance a well: the pores whose
+/// centre lies between `lower` and `upper` (borders included) or, where there is none, the pore whose
+/// centre is nearest to the middle, so that lower = upper gives a point. Such a pore belongs to the
+/// region alone, also where it touches a face; where regions overlap, the later one wins. The fluid
+/// that a flux brings in appears at rest: it exerts no force of its own.
+struct Region {
+  Eigen::Vector3d lower = Eigen::Vector3d::Zero(), upper = Eigen::Vector3d::Zero();  ///< m
+  Boundary boundary;  ///< pressure or flux
+};
+
 /// The flow box: six plane walls normal to the axes, m.
 ///
 /// A pore that touches several faces takes the first of: imposed pressure (the mean, where it touches
@@ -76,6 +86,7 @@ struct Box {
   Eigen::Vector3d upper = Eigen::Vector3d::Ones();
   std::array<FaceCondition, 6> faces;
   std::vector<Patch> patches;
+  std::vector<Region> regions;
   /// Axes along which the packing repeats; their two faces do not exist (they stay sealed, at rest).
   std::array<bool, 3> periodic{false, false, false};
   /// Macroscopic pressure gradient along the periodic axes, Pa/m: the pressure is a periodic field plus
@@ -98,7 +109,7 @@ struct Box {
 };
 
 /// Throws InputError when the box is flat, inverted or not finite, or when a boundary value, a face
-/// velocity or a patch is not finite, inverted or outside its face.
+/// velocity, a patch or a region is not finite, inverted or outside its face or the box.
 void check(const Box& box);
 
 }  // namespace pfv

@@ -96,8 +96,8 @@ class FlowModel {
   /// Discards what was derived from the packing; the next call makes it anew.
   virtual void rebuild() = 0;
 
-  /// New positions, velocities or boundary values of the faces and patches. Values cost nothing;
-  /// another kind of boundary, another wall type, or other rectangles lead to a rebuild. Positions
+  /// New positions, velocities or boundary values of faces, patches and regions. Values cost nothing;
+  /// another kind of boundary, another wall type, or other extents lead to a rebuild. Positions
   /// take effect at the next rebuild.
   virtual void set_box(const Box& box) = 0;
   virtual const Box& box() const = 0;

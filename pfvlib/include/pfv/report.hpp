@@ -17,6 +17,14 @@ struct FaceResult {
   Eigen::Vector3d force_viscous = Eigen::Vector3d::Zero();    ///< N, of the fluid on the face
 };
 
+/// What crosses a patch or enters a region.
+struct OpeningResult {
+  std::string name;                ///< "patch 1 on face zhi", "region 2"
+  std::int64_t pores = 0;          ///< or faces of cells
+  double flux = 0.0;               ///< m³/s, positive INTO the box
+  std::optional<double> pressure;  ///< Pa, mean of its pores; absent without a pore
+};
+
 /// How often each piece of work was done since the Flow was made: a scene pays for nothing else.
 struct Counts {
   std::int64_t triangulate = 0, order = 0, factor = 0, solve = 0, force_matrix = 0, volume_rate = 0;
@@ -59,6 +67,7 @@ struct Report {
   double residual = 0;
   std::string solver, ordering, conductance;
   std::array<FaceResult, 6> faces;
+  std::vector<OpeningResult> openings;  ///< the patches, then the regions, in their order
   Counts counts;
   Seconds seconds;
   WallSeconds wall_seconds;

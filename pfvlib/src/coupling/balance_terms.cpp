@@ -18,7 +18,7 @@ double mass_error(const Totals& totals, double volume_rate, double storage_rate,
 }
 
 std::optional<int> axis_of_flow(const Box& box) {
-  if (!box.patches.empty()) return {};
+  if (!box.patches.empty() || !box.regions.empty()) return {};
   int axis = -1, open = 0;
   for (const Face face : all_faces) {
     const Boundary& boundary = box[face].boundary;

@@ -14,6 +14,10 @@ namespace {
 std::vector<double> contact_inflows(const FlowData& flow, const Eigen::VectorXd& inflow) {
   const auto& contacts = flow.built->boundaries.contacts;
   const auto carries = [&](const PoreBoundaries::Contact& contact) {
+    // what a region brings in enters inside, also into a pore that touches a face
+    if (contact.boundary >= first_region(flow.solved_box) &&
+        contact.face != PoreBoundaries::inside)
+      return false;
     const Boundary::Kind kind = boundary_of(flow.solved_box, contact.boundary).kind;
     const int unknown = flow.built->unknowns.of_pore[contact.pore];
     if (unknown == Unknowns::imposed) return kind == Boundary::Kind::pressure;
@@ -27,17 +31,41 @@ std::vector<double> contact_inflows(const FlowData& flow, const Eigen::VectorXd&
     for (; last < contacts.size() && contacts[last].pore == contacts[first].pore; ++last)
       if (carries(contacts[last])) area += flow.built->base_area[last];
     // a pore on several open faces: by its base on each
-    for (std::size_t c = first; c < last; ++c)
-      if (carries(contacts[c]) && area > 0.0)
+    for (std::size_t c = first; c < last; ++c) {
+      if (!carries(contacts[c])) continue;
+      if (contacts[c].face == PoreBoundaries::inside) result[c] = inflow[contacts[c].pore];
+      else if (area > 0.0)
         result[c] = inflow[contacts[c].pore] * flow.built->base_area[c] / area;
+    }
     first = last;
   }
   return result;
 }
 
+std::vector<OpeningResult> openings(const FlowData& flow, const std::vector<double>& inflows) {
+  const Box& box = flow.solved_box;
+  std::vector<OpeningResult> results;
+  for (int boundary = 6; boundary < boundary_count(box); ++boundary) {
+    OpeningResult result;
+    result.name = boundary_name(box, boundary);
+    double sum = 0.0;
+    for (std::size_t c = 0; c < inflows.size(); ++c) {
+      const PoreBoundaries::Contact& contact = flow.built->boundaries.contacts[c];
+      const bool own = boundary < first_region(box) || contact.face == PoreBoundaries::inside;
+      if (contact.boundary != boundary || !own) continue;
+      ++result.pores;
+      result.flux += inflows[c];
+      sum += flow.pressures[contact.pore];
+    }
+    if (result.pores > 0) result.pressure = sum / static_cast<double>(result.pores);
+    results.push_back(result);
+  }
+  return results;
+}
+
 Totals boundary_totals(const FlowData& flow, const std::vector<double>& inflows) {
   const auto& contacts = flow.built->boundaries.contacts;
-  std::vector<double> of_boundary(6 + flow.solved_box.patches.size(), 0.0);
+  std::vector<double> of_boundary(boundary_count(flow.solved_box), 0.0);
   Totals totals;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     of_boundary[contacts[c].boundary] += inflows[c];
@@ -110,8 +138,9 @@ std::array<FaceResult, 6> face_forces(const FlowData& flow) {
   const int spheres = flow.built->grains.spheres.size();
   std::array<double, 6> relative{};
   for (std::size_t c = 0; c < contacts.size(); ++c)
-    relative[contacts[c].face] +=
-        flow.relative_pressures[contacts[c].pore] * flow.built->base_area[c];
+    if (contacts[c].face != PoreBoundaries::inside)
+      relative[contacts[c].face] +=
+          flow.relative_pressures[contacts[c].pore] * flow.built->base_area[c];
   const Eigen::Vector3d edges = flow.built->grains.spheres.edges;
   for (const Face face : all_faces) {
     const int f = static_cast<int>(face), axis = axis_of(face);
@@ -131,8 +160,10 @@ const Balance& FlowData::balance() {
     fresh.contact_inflows =
         contact_inflows(*this, pore_inflows(*this, fresh.throat_fluxes, fresh.correction));
     fresh.faces = face_forces(*this);
-    for (std::size_t c = 0; c < fresh.contact_inflows.size(); ++c)
-      fresh.faces[built->boundaries.contacts[c].face].flux += fresh.contact_inflows[c];
+    for (std::size_t c = 0; c < fresh.contact_inflows.size(); ++c) {
+      const int face = built->boundaries.contacts[c].face;
+      if (face != PoreBoundaries::inside) fresh.faces[face].flux += fresh.contact_inflows[c];
+    }
     balance_ = std::move(fresh);
   }
   return *balance_;
@@ -158,6 +189,7 @@ Report make_report(FlowData& flow) {
   report.ordering = name_of(resolved(flow.options.solver, flow.options.ordering));
   report.conductance = name_of(flow.options.conductance);
   report.faces = balance.faces;
+  report.openings = openings(flow, balance.contact_inflows);
   report.counts = flow.counts;
   report.threads = flow.options.threads;
   report.seconds = flow.seconds;

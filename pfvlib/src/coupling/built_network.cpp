@@ -58,10 +58,12 @@ Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built) {
 Eigen::Matrix3Xd forces_with_faces(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
   Eigen::Matrix3Xd forces = multiply(*built.force_matrix, pressures);
   const auto& contacts = built.boundaries.contacts;
-  for (std::size_t c = 0; c < contacts.size(); ++c)
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (contacts[c].face == PoreBoundaries::inside) continue;
     forces.col(built.grains.spheres.size() + contacts[c].face) +=
         pressures[contacts[c].pore] * built.base_area[c] *
         outward_normal(static_cast<Face>(contacts[c].face));
+  }
   return forces;
 }
 

@@ -17,7 +17,13 @@ namespace {
 
 /// What a change of leads to a new network: everything of a boundary but its values.
 bool same_kinds(const Box& a, const Box& b) {
-  if (a.patches.size() != b.patches.size() || a.periodic != b.periodic) return false;
+  if (a.patches.size() != b.patches.size() || a.regions.size() != b.regions.size() ||
+      a.periodic != b.periodic)
+    return false;
+  for (std::size_t i = 0; i < a.regions.size(); ++i)
+    if (a.regions[i].lower != b.regions[i].lower || a.regions[i].upper != b.regions[i].upper ||
+        a.regions[i].boundary.kind != b.regions[i].boundary.kind)
+      return false;
   for (std::size_t i = 0; i < a.patches.size(); ++i)
     if (a.patches[i].face != b.patches[i].face ||
         a.patches[i].rectangle != b.patches[i].rectangle ||

@@ -154,6 +154,26 @@ void check_lag(const Options& options) {
                      "geometric, or set rebuild_lag to 0");
 }
 
+void check_region(const Box& box, std::size_t number) {
+  const Region& region = box.regions[number];
+  const std::string where = "region " + std::to_string(number + 1);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from = region.lower[axis], to = region.upper[axis];
+    const std::string along = where + " along " + axis_names[axis];
+    require_finite(from, along + ": lower bound");
+    require_finite(to, along + ": upper bound");
+    if (to < from)
+      throw InputError(along + " is " + interval(from, to) +
+                       ", inverted: give the lower bound first");
+    if (to < box.lower[axis] || from > box.upper[axis])
+      throw InputError(along + " is " + interval(from, to) + ", outside the box " +
+                       interval(box.lower[axis], box.upper[axis]) + ": move it into the box");
+  }
+  if (region.boundary.kind == Boundary::Kind::sealed)
+    throw InputError(where + " has no boundary: give it a pressure or a flux");
+  check(region.boundary, where);
+}
+
 }  // namespace
 
 const char* name_of(Face face) {
@@ -201,6 +221,7 @@ void check(const Box& box) {
     check(box[face].boundary, where);
   }
   for (std::size_t number = 0; number < box.patches.size(); ++number) check_patch(box, number);
+  for (std::size_t number = 0; number < box.regions.size(); ++number) check_region(box, number);
   check_periodic(box);
 }
 

@@ -14,7 +14,7 @@ namespace pfv {
 namespace {
 
 bool any_boundary(const Box& box, Boundary::Kind kind, bool nonzero_only = false) {
-  for (int b = 0; b < 6 + static_cast<int>(box.patches.size()); ++b) {
+  for (int b = 0; b < boundary_count(box); ++b) {
     const Boundary& boundary = boundary_of(box, b);
     if (boundary.kind == kind && (!nonzero_only || boundary.value != 0.0)) return true;
   }
@@ -47,11 +47,11 @@ void FlowData::refuse_undetermined(bool moving_now) const {
   if (fluid.bulk_modulus || box.any_periodic() || any_boundary(box, Boundary::Kind::pressure))
     return;
   if (moving_now)
-    throw InputError("the grains or faces move, the fluid is incompressible, and no face or patch "
-                     "has a pressure: nothing determines the pressure; give a pressure to a face, "
+    throw InputError("the grains or faces move, the fluid is incompressible, and no face, patch "
+                     "or region has a pressure: nothing determines the pressure; give a pressure to a face, "
                      "or a bulk modulus");
   if (any_boundary(box, Boundary::Kind::flux, true))
-    throw InputError("a flux is imposed, the fluid is incompressible, and no face or patch has a "
+    throw InputError("a flux is imposed, the fluid is incompressible, and no face, patch or region has a "
                      "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
                      "modulus");
 }

@@ -20,7 +20,10 @@ void refuse_if(bool given, const char* what) {
                      ": leave it away, or use the model pfv");
 }
 
-void refuse_periodic(const Box& box) { refuse_if(box.any_periodic(), "periodic axes"); }
+void refuse_what_has_no_cells(const Box& box) {
+  refuse_if(box.any_periodic(), "periodic axes");
+  refuse_if(!box.regions.empty(), "regions");
+}
 
 bool same_boundaries(const Box& a, const Box& b) {
   if (a.patches.size() != b.patches.size()) return false;
@@ -85,7 +88,7 @@ DarcyGrid::DarcyGrid(Box box, Fluid fluid, DarcyOptions grid, Options options)
   check(fluid);
   check(options);
   check(grid, fluid, options);
-  refuse_periodic(box);
+  refuse_what_has_no_cells(box);
   data_->box = std::move(box);
   data_->fluid = fluid;
   data_->grid_options = grid;
@@ -118,7 +121,7 @@ void DarcyGrid::rebuild() { data_->stale = true; }
 
 void DarcyGrid::set_box(const Box& box) {
   check(box);
-  refuse_periodic(box);
+  refuse_what_has_no_cells(box);
   if (!same_boundaries(data_->box, box)) data_->stale = true;
   data_->box = box;
 }

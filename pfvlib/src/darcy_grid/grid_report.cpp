@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/balance_terms.hpp"
 #include "darcy_grid/darcy_data.hpp"
+#include "network/pore_boundaries.hpp"
 
 #include <cmath>
 
@@ -8,8 +9,27 @@ namespace pfv {
 
 namespace {
 
+/// The faces of cells that each patch took.
+std::vector<OpeningResult> openings(const DarcyData& flow) {
+  std::vector<OpeningResult> results(flow.solved_box.patches.size());
+  for (std::size_t patch = 0; patch < results.size(); ++patch) {
+    OpeningResult& result = results[patch];
+    const int boundary = 6 + static_cast<int>(patch);
+    result.name = boundary_name(flow.solved_box, boundary);
+    double sum = 0.0;
+    for (std::size_t f = 0; f < flow.built->faces.size(); ++f) {
+      if (flow.built->faces[f].boundary != boundary) continue;
+      ++result.pores;
+      result.flux += flow.fields.face_inflow[static_cast<Eigen::Index>(f)];
+      sum += flow.fields.face_pressure[static_cast<Eigen::Index>(f)] + flow.reference;
+    }
+    if (result.pores > 0) result.pressure = sum / static_cast<double>(result.pores);
+  }
+  return results;
+}
+
 Totals boundary_totals(const DarcyData& flow) {
-  std::vector<double> of_boundary(6 + flow.solved_box.patches.size(), 0.0);
+  std::vector<double> of_boundary(boundary_count(flow.solved_box), 0.0);
   Totals totals;
   for (std::size_t f = 0; f < flow.built->faces.size(); ++f) {
     const double inflow = flow.fields.face_inflow[static_cast<Eigen::Index>(f)];
@@ -68,6 +88,7 @@ Report make_report(const DarcyData& flow) {
   report.conductance = "kozeny_carman";
   report.threads = flow.options.threads;
   report.faces = flow.faces;
+  report.openings = openings(flow);
   report.counts = flow.counts;
   report.seconds = flow.seconds;
   report.wall_seconds.total = flow.wall_total;

@@ -28,6 +28,16 @@ Json faces(const Report& report) {
   return json;
 }
 
+Json openings(const Report& report) {
+  Json json = Json::array();
+  for (const OpeningResult& opening : report.openings)
+    json.push_back({{"name", opening.name},
+                    {"pores", opening.pores},
+                    {"flux", number(opening.flux)},
+                    {"pressure", number(opening.pressure)}});
+  return json;
+}
+
 Json tensor(const std::optional<Eigen::Matrix3d>& tensor) {
   if (!tensor) return nullptr;
   return {vector(tensor->row(0)), vector(tensor->row(1)), vector(tensor->row(2))};
@@ -85,6 +95,7 @@ Json to_json(const Report& report) {
           {"ordering", report.ordering},
           {"conductance", report.conductance},
           {"faces", faces(report)},
+          {"openings", openings(report)},
           {"counts", counts(report.counts)},
           {"seconds", seconds(report.seconds)},
           {"wall_seconds", wall_seconds(report.wall_seconds)},

@@ -50,10 +50,55 @@ void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNet
   if (!any && nearest) nearest->boundary = 6 + number;
 }
 
+/// The region of each pore, or -1.
+std::vector<int> regions_of_pores(const PoreNetwork& network, const Box& box) {
+  std::vector<int> region_of(network.pores(), -1);
+  for (std::size_t number = 0; number < box.regions.size(); ++number) {
+    const Region& region = box.regions[number];
+    const Eigen::Array3d slack = 1e-9 * (region.upper - region.lower).array();
+    const Eigen::Vector3d middle = 0.5 * (region.lower + region.upper);
+    int nearest = -1;
+    double nearest_distance = std::numeric_limits<double>::infinity();
+    bool any = false;
+    for (int pore = 0; pore < network.pores(); ++pore) {
+      const Eigen::Vector3d place = network.origin + network.pore_centres.col(pore);
+      if ((place.array() >= region.lower.array() - slack).all() &&
+          (place.array() <= region.upper.array() + slack).all()) {
+        region_of[pore] = static_cast<int>(number);
+        any = true;
+      }
+      const double distance = (place - middle).norm();
+      if (distance < nearest_distance) {
+        nearest_distance = distance;
+        nearest = pore;
+      }
+    }
+    if (!any && nearest >= 0) region_of[nearest] = static_cast<int>(number);
+  }
+  return region_of;
+}
+
+void give_to_regions(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
+                     const Box& box) {
+  if (box.regions.empty()) return;
+  const std::vector<int> region_of = regions_of_pores(network, box);
+  for (PoreBoundaries::Contact& contact : contacts)
+    if (region_of[contact.pore] >= 0)
+      contact.boundary = first_region(box) + region_of[contact.pore];
+  for (int pore = 0; pore < network.pores(); ++pore)
+    if (region_of[pore] >= 0)
+      contacts.push_back({pore, PoreBoundaries::inside, first_region(box) + region_of[pore]});
+  std::sort(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.pore, a.face) < std::pair(b.pore, b.face);
+  });
+}
+
 }  // namespace
 
 std::string boundary_name(const Box& box, int number) {
   if (number < 6) return std::string("face ") + name_of(static_cast<Face>(number));
+  if (number >= first_region(box))
+    return "region " + std::to_string(number - first_region(box) + 1);
   return "patch " + std::to_string(number - 5) + " on face " +
          name_of(box.patches[number - 6].face);
 }
@@ -71,6 +116,7 @@ PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Box& box) 
     if (box.faces[contact.face].wall == Wall::no_slip &&
         boundary_of(box, contact.boundary).kind == Boundary::Kind::sealed)
       result.no_slip_faces[contact.pore] |= static_cast<std::uint8_t>(1u << contact.face);
+  give_to_regions(result.contacts, network, box);
   return result;
 }
 

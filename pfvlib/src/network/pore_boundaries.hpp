@@ -9,22 +9,30 @@
 
 namespace pfv {
 
-/// Where pores meet the box. Boundary number f < 6 is face f, 6 + i is patch i.
+/// Where pores meet the box and its regions. Boundary number f < 6 is face f, then come the patches,
+/// then the regions.
 struct PoreBoundaries {
+  static constexpr int inside = -1;  ///< in the place of a face: a pore's part in its region
   struct Contact {
     int pore, face, boundary;
   };
-  std::vector<Contact> contacts;           ///< sorted by pore, then by face
+  std::vector<Contact> contacts;           ///< sorted by pore, then by face; `inside` comes first
   std::vector<std::uint8_t> no_slip_faces;  ///< one entry a pore; bit f: it rubs on face f
 };
 
 /// Which face or patch each boundary pore belongs to; geometry only, so values may change later.
 PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Box& box);
 
-inline const Boundary& boundary_of(const Box& box, int number) {
-  return number < 6 ? box.faces[number].boundary : box.patches[number - 6].boundary;
+inline int boundary_count(const Box& box) {
+  return static_cast<int>(6 + box.patches.size() + box.regions.size());
 }
-/// "face zlo", "patch 2 on face zhi": for messages.
+inline int first_region(const Box& box) { return static_cast<int>(6 + box.patches.size()); }
+inline const Boundary& boundary_of(const Box& box, int number) {
+  if (number < 6) return box.faces[number].boundary;
+  if (number < first_region(box)) return box.patches[number - 6].boundary;
+  return box.regions[number - first_region(box)].boundary;
+}
+/// "face zlo", "patch 2 on face zhi", "region 1": for messages.
 std::string boundary_name(const Box& box, int number);
 
 }  // namespace pfv

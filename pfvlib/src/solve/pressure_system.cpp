@@ -111,7 +111,7 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
   const auto conditions = conditions_of_pores(network, boundaries, box);
   Unknowns unknowns;
   unknowns.of_pore.assign(network.pores(), Unknowns::imposed);
-  unknowns.of_boundary.assign(6 + box.patches.size(), -1);
+  unknowns.of_boundary.assign(boundary_count(box), -1);
   for (int pore = 0; pore < network.pores(); ++pore) {
     if (conditions[pore].pressure) {
       unknowns.imposed_pores.push_back(pore);
@@ -131,7 +131,7 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
         unknowns.of_boundary[b] < 0)
       throw InputError(boundary_name(box, b) +
                        ": its flux has no pore to enter (all its pores carry an imposed pressure, "
-                       "or it has none); give the flux to another face or enlarge the patch");
+                       "or it has none); give the flux to another face or enlarge the patch or region");
   }
   return unknowns;
 }
