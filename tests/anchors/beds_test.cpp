@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The default law and its estimated error beside Stokes flow in packings with finite-element
 // solutions (stokes_beds_*.csv: one mesh, K low by 1 to 3 %) and in periodic random beds beside the
-// correlation of van der Hoef, Beetstra & Kuipers (2005). doc/accuracy.md tells how each was made. No
-// number of the law was fitted on them; those of bed_24 were looked at while its form was chosen.
+// correlation of van der Hoef, Beetstra & Kuipers (2005). doc/accuracy.md tells how each was made.
+// No number of the law was fitted on them; those of bed_24 were looked at while its form was
+// chosen.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
@@ -75,8 +76,9 @@ std::array<double, 2> force_errors(const std::string& bed, const std::string& wa
   return {errors[errors.size() / 2], errors.back()};
 }
 
-// Goals: K within 10 %: measured within 9.2 %. Forces within 8 % (median) and 25 % (worst): missed by far
-// shrunk spheres (x 0.7), by sizes 3 to 8 and 4 (the small spheres), by single spheres elsewhere.
+// Goals: K within 10 %: measured within 9.2 %. Forces within 8 % (median) and 25 % (worst): missed
+// by far shrunk spheres (x 0.7), by sizes 3 to 8 and 4 (the small spheres), by single spheres
+// elsewhere.
 TEST(Beds, OpenThroatIsRecordedBesideFiniteElements) {
   const std::vector<Recorded> all{{"bed_24_x1", "no_slip", 0.9898, 0.053, 0.156},
                                   {"bed_24_x1", "symmetry", 1.0604, 0.063, 0.108},
@@ -114,8 +116,8 @@ TEST(Beds, OpenThroatIsRecordedBesideFiniteElements) {
   }
 }
 
-// Goal: within 12 % from solid fraction 0.3 to 0.64. Measured within 6.8 %; the papers' law is 1.15 to
-// 2.60 times too permeable.
+// Goal: within 12 % from solid fraction 0.3 to 0.64. Measured within 6.8 %; the papers' law is 1.15
+// to 2.60 times too permeable.
 TEST(Beds, OpenThroatIsWithin7PerCentOfTheCorrelationInPeriodicRandomBeds) {
   const std::vector<std::pair<std::string, double>> all{
       {"30", 0.9701}, {"40", 0.9760}, {"50", 0.9927}, {"55", 0.9910},
@@ -171,8 +173,8 @@ struct Coverage {
   double too_large;  ///< mean estimate over mean error
 };
 
-// Goal: the estimate covers 80 % of the anchors and is not more than 3 times too large on average. Measured
-// here without the lattices, which doc/accuracy.md adds.
+// Goal: the estimate covers 80 % of the anchors and is not more than 3 times too large on average.
+// Measured here without the lattices, which doc/accuracy.md adds.
 TEST(Beds, TheEstimatedErrorCoversTheActualOne) {
   for (const Coverage& recorded : {Coverage{ConductanceLaw::open_throat, 39, 2.21},
                                    Coverage{ConductanceLaw::effective_radius, 37, 1.05},

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two closest packings in periodic cells whose z axis stands on the close-packed planes: HCP (planes
-// ABAB, box 1 x sqrt(3) x sqrt(8/3) diameters, 4 spheres) and FCC (ABCABC, 1 x sqrt(3) x sqrt(6), 6
-// spheres). Symmetry demands k_xx = k_yy and no shear terms, and for FCC k_zz = k_xx as in its cubic cell.
+// The two closest packings in periodic cells whose z axis stands on the close-packed planes: HCP
+// (planes ABAB, box 1 x sqrt(3) x sqrt(8/3) diameters, 4 spheres) and FCC (ABCABC, 1 x sqrt(3) x
+// sqrt(6), 6 spheres). Symmetry demands k_xx = k_yy and no shear terms, and for FCC k_zz = k_xx as
+// in its cubic cell.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
@@ -22,7 +23,8 @@ struct Cell {
   pfv::PackingArrays packing;
 };
 
-/// Close-packed planes of spheres of diameter 1, times `scale`, in this stacking: 0, 1, 2 for A, B, C.
+/// Close-packed planes of spheres of diameter 1, times `scale`, in this stacking: 0, 1, 2 for A, B,
+/// C.
 Cell stacked(const std::vector<int>& planes, double scale) {
   const double row = std::sqrt(3.0), layer = std::sqrt(2.0 / 3.0);
   std::vector<Sphere> spheres;
@@ -86,8 +88,8 @@ TEST(ClosePacked, FccIsAsPermeableAcrossThePlaneAsAlongItAndAsInItsCubicCell) {
     }
 }
 
-// The planes have the throats of FCC, so that k_xx is FCC's; across them two cells of one kind share
-// faces. Measured k_zz / k_xx: 1.0042 touching to 1.0019 at 0.7 of the radius.
+// The planes have the throats of FCC, so that k_xx is FCC's; across them two cells of one kind
+// share faces. Measured k_zz / k_xx: 1.0042 touching to 1.0019 at 0.7 of the radius.
 TEST(ClosePacked, HcpIsAsPermeableAlongThePlaneAsFccAndHardlyMoreAcross) {
   for (const ConductanceLaw law : {ConductanceLaw::hydraulic_radius, ConductanceLaw::open_throat})
     for (const double scale : scales) {

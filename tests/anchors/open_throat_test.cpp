@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The open-throat law beside Stokes flow: the nine-sphere cell and 36 spheres at random (finite
-// elements, not fitted), cubic arrays (Zick & Homsy 1982 and finite elements; two numbers of the law
-// were fitted on their loosened states), and beside the papers' law in dense beds.
+// elements, not fitted), cubic arrays (Zick & Homsy 1982 and finite elements; two numbers of the
+// law were fitted on their loosened states), and beside the papers' law in dense beds.
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
@@ -119,9 +119,10 @@ void expect_lattice(Lattice kind, const std::vector<LatticeState>& states) {
   }
 }
 
-// Goal: within 10 % at radius scales 1, 0.95, 0.9 and 0.8. Zick & Homsy (1982) where touching, finite
-// elements (0.2 %) where loosened; where overlapping by 3 and 6 % finite elements (1 %), the papers' law
-// is 22 to 40 % low. Measured: within 7.9 % touching, 4.6 % loosened, 8.3 % overlapping.
+// Goal: within 10 % at radius scales 1, 0.95, 0.9 and 0.8. Zick & Homsy (1982) where touching,
+// finite elements (0.2 %) where loosened; where overlapping by 3 and 6 % finite elements (1 %), the
+// papers' law is 22 to 40 % low. Measured: within 7.9 % touching, 4.6 % loosened, 8.3 %
+// overlapping.
 TEST(OpenThroat, PeriodicSimpleCubicArray) {
   const auto k = [](double scale, double drag) { return k_of_drag(1, 0.5 * scale, drag); };
   expect_lattice(Lattice::sc, {{1.06, 1.37346e-3, 0.9172},
@@ -153,8 +154,9 @@ TEST(OpenThroat, PeriodicFaceCentredArray) {
                                 {0.7, k(0.7, 9.72), 0.9842}});
 }
 
-// Spheres that cross symmetry walls overlap with their images, but of the caps there only 0.8 counts: with
-// all of them, as in the periodic cell, the law would be 7 % above the papers' in packing_500.
+// Spheres that cross symmetry walls overlap with their images, but of the caps there only 0.8
+// counts: with all of them, as in the periodic cell, the law would be 7 % above the papers' in
+// packing_500.
 TEST(OpenThroat, OverlappingSimpleCubicArrayBetweenSymmetryWalls) {
   const std::vector<std::array<double, 3>> states{{1.03, 1.87691e-3, 0.9221},
                                                   {1.06, 1.37346e-3, 0.8774}};

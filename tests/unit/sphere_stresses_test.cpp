@@ -15,8 +15,8 @@ struct SmallSphere {
   double stress, force;  ///< viscous: the largest component of its stress, its force along z
 };
 
-/// The ninth sphere of the paper's cell, in a pressure with a gradient (which pushes it) and a curvature
-/// (which stretches it).
+/// The ninth sphere of the paper's cell, in a pressure with a gradient (which pushes it) and a
+/// curvature (which stretches it).
 SmallSphere ninth_sphere(pfv::ConductanceLaw law) {
   const Stages s = stages_of(nine_spheres(0.1), upward_box(pfv::Wall::symmetry));
   const Eigen::VectorXd z = s.network.pore_centres.row(2).transpose().array() - 0.5;

@@ -15,8 +15,8 @@ struct OpenThroat {
   bool at_bound = false;      ///< g is the largest that the law allows
 };
 
-/// c = g / L with two resistances in series, of the throat while spheres touch and of the drag on the
-/// spheres once they part:
+/// c = g / L with two resistances in series, of the throat while spheres touch and of the drag on
+/// the spheres once they part:
 ///   1 / g = 1 / g_touching + w / g_open,
 ///   g_touching = alpha A^f R² / mu,  g_open = S e R² / (k mu),
 /// but at most g = 10 S 2^n S / mu (n slip walls: they mirror the facet), where
@@ -26,14 +26,14 @@ struct OpenThroat {
 ///   e = phi / (S L / 3), the porosity of the domain;
 ///   k = the Kozeny constant of Kuwabara's cell for e, and of plates (3) for no-slip walls, their
 ///       square roots averaged with gamma as weight (drags of few spheres and of a wall add up);
-///   w = mean of q / (1 + q) over the sides of the facet, q = (h / 0.18)^0.8, h the gap over the sum
-///       of radii (over the radius at a wall), even below h = 0.001; a triangle's widest side is left
-///       out, a slip wall mirrors the facet, a no-slip wall is a side with w = 0.
+///   w = mean of q / (1 + q) over the sides of the facet, q = (h / 0.18)^0.8, h the gap over the
+///       sum of radii (over the radius at a wall), even below h = 0.001; a triangle's widest side
+///       is left out, a slip wall mirrors the facet, a no-slip wall is a side with w = 0.
 /// Limits: the hydraulic radius where spheres touch (w = 0); Stokes' drag on single spheres where
 /// they are far apart (w = 1, k = 1 / (2 (1 - e))). All of it adds up, or is a mean, over the
-/// pieces of a polygon. Fitted: 0.18 and its power on SC, BCC and FCC at radius scales 0.95 to 0.7; the
-/// share of caps on two dense beds. Not fitted: overlapping lattices, random beds, the nine-sphere cell,
-/// 24 and 36 spheres with either wall.
+/// pieces of a polygon. Fitted: 0.18 and its power on SC, BCC and FCC at radius scales 0.95 to 0.7;
+/// the share of caps on two dense beds. Not fitted: overlapping lattices, random beds, the
+/// nine-sphere cell, 24 and 36 spheres with either wall.
 ///
 /// For throats that are not closed. Pure; about 1 µs.
 OpenThroat open_throat(const PoreNetwork& network, const Throats& throats, const Spheres& spheres,

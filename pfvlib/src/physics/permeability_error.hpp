@@ -19,14 +19,15 @@ struct PermeabilityError {
 
 /// Estimate for the permeability of a flow that dissipates `dissipation[t]` (any unit) in throat t.
 ///
-/// In a network of resistors d ln K = sum_t w_t d ln g_t, w_t the throat's share of the dissipation.
-/// The open-throat law's own error of a throat, whose sign is common to many and does not average out,
+/// In a network of resistors d ln K = sum_t w_t d ln g_t, w_t the throat's share of the
+/// dissipation. The open-throat law's own error of a throat, whose sign is common to many and does
+/// not average out,
 ///   sigma_t = 0.055 + 0.06 x (1 - x) + 0.05 (wall share) + 0.8 (hidden share),
-/// x the drag's share of the resistance (the blend of two limits is the least certain half-way), 0.5
-/// where a rule or the bound sets g. Another law adds 1.05 |sum_t w_t ln(g_t / g_t of the open-throat
-/// law)|, 0.05 for what a first-order sum leaves out.
-/// 0.055 to 0.8 were calibrated on lattices, random beds, the nine-sphere cell and small packings of
-/// doc/accuracy.md, which says how often the estimate holds there and on packings made later.
+/// x the drag's share of the resistance (the blend of two limits is the least certain half-way),
+/// 0.5 where a rule or the bound sets g. Another law adds 1.05 |sum_t w_t ln(g_t / g_t of the
+/// open-throat law)|, 0.05 for what a first-order sum leaves out. 0.055 to 0.8 were calibrated on
+/// lattices, random beds, the nine-sphere cell and small packings of doc/accuracy.md, which says
+/// how often the estimate holds there and on packings made later.
 ///
 /// `solid_fraction` of the bed is compared with that of the anchors. Pure; about 2 µs a throat.
 PermeabilityError permeability_error(const PoreNetwork& network, const Throats& throats,

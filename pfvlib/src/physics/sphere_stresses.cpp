@@ -13,10 +13,10 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Integral of n n^T over the spherical triangle of three directions. The surface divergence of
-/// n_i e_j (projected) is delta_ij - 3 n_i n_j, so that the integral is the solid angle's third plus a
-/// line integral over the edges, each in closed form: of n along the arc from a to b it is
-/// (a + b) tan(arc / 2), and the outward conormal is constant.
+/// Integral of n n^T over the spherical triangle of three directions. The surface divergence of n_i
+/// e_j (projected) is delta_ij - 3 n_i n_j, so that the integral is the solid angle's third plus a
+/// line integral over the edges, each in closed form: of n along the arc from a to b it is (a + b)
+/// tan(arc / 2), and the outward conormal is constant.
 Eigen::Matrix3d second_moment(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                               const Eigen::Vector3d& c) {
   const double angle = solid_angle(a, b, c);

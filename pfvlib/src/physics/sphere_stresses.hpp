@@ -13,11 +13,12 @@ namespace pfv {
 /// xx, yy, zz, xy, xz, yz: LIGGGHTS' order. Tension is positive, Pa.
 using Stresses = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Mean stress that the fluid causes in each sphere, one column a sphere: the moment of its tractions
-/// about the centre over the sphere's volume, symmetric part (the solid's share of thesis eq. 2.18). The
-/// pressure of each pore acts on the sphere's surface in its cells, exactly; the viscous force of a
-/// throat, shared as in the force matrix, acts where the line to the facet's middle leaves the sphere.
-/// In an even pressure p the result is -p times unity. Cost: one pass over cells and facets.
+/// Mean stress that the fluid causes in each sphere, one column a sphere: the moment of its
+/// tractions about the centre over the sphere's volume, symmetric part (the solid's share of thesis
+/// eq. 2.18). The pressure of each pore acts on the sphere's surface in its cells, exactly; the
+/// viscous force of a throat, shared as in the force matrix, acts where the line to the facet's
+/// middle leaves the sphere. In an even pressure p the result is -p times unity. Cost: one pass
+/// over cells and facets.
 Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats,
                          const ViscousShares& shares, const Spheres& vertices,
                          const Eigen::VectorXd& pressures, int spheres);
