@@ -277,13 +277,15 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "profile") settings.profile = parse_profile(words);
   else if (keyword == "flux_profile") settings.flux_profile = parse_profile(words);
   else if (keyword == "sensors") parse_sensors(words, settings);
+  else if (keyword == "culprits") settings.culprits = words.word("the file's name");
   else
     throw pfv::InputError("unknown keyword '" + keyword +
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
                           "region, point, pressure_profile, retriangulate, rebuild_lag, "
                           "couple_every, coupling, "
                           "time_step_check, conductance, shear_viscous, solver, tolerance, "
-                          "precision, threads, output, profile, flux_profile and sensors");
+                          "precision, threads, output, profile, flux_profile, sensors and "
+                          "culprits");
 }
 
 /// A profile makes its face one of imposed pressure, which a face with another boundary is not.

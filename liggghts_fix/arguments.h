@@ -92,6 +92,7 @@ struct PfvSettings {
   std::optional<PfvFieldOutput> fields;
   std::optional<PfvProfileOutput> profile, flux_profile;
   std::optional<PfvSensorOutput> sensors;
+  std::optional<std::string> culprits;  ///< file for what an error is about
 };
 
 /// The settings of `fix ID group pfv ...`; `arg` holds the words behind the style. Throws

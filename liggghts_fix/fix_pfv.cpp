@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
+#include "pfv/io.hpp"
 
 #include "atom.h"
 #include "comm.h"
@@ -79,6 +80,18 @@ void FixPfv::everywhere(Work&& work) {
   } catch (const std::exception& problem) {
     error->fix_error(FLERR, this, problem.what());
   }
+}
+
+std::string FixPfv::with_culprits(const std::exception& problem) const {
+  const std::string message = problem.what();
+  const auto* error = dynamic_cast<const pfv::Error*>(&problem);
+  if (!settings_.culprits || !error) return message;
+  try {
+    pfv::write_culprits(*settings_.culprits, grains_.packing(), error->culprits());
+  } catch (const pfv::FileError& unwritten) {
+    return message + " (" + unwritten.what() + ")";
+  }
+  return message + " (drawn in " + *settings_.culprits + ")";
 }
 
 void FixPfv::fail_together(std::string message) {

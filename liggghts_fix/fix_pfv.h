@@ -56,6 +56,7 @@ class FixPfv : public Fix {
   template <typename Work>
   void on_root(Work&& work);  ///< work of rank 0, whose failure the others are told of
   void fail_together(std::string message);
+  std::string with_culprits(const std::exception& problem) const;  ///< its text, once they are written
 
   // refusals
   void check_environment();
@@ -133,7 +134,7 @@ void FixPfv::on_root(Work&& work) {
     try {
       work();
     } catch (const std::exception& problem) {
-      message = problem.what();
+      message = with_culprits(problem);
       if (message.empty()) message = "an exception without a text";
     }
   }

@@ -101,6 +101,7 @@ void PfvRowFile::write_row(const std::vector<double>& values) {
 PfvResultFiles::PfvResultFiles(const PfvSettings& settings)
     : fields_(settings.fields), profile_(settings.profile),
       flux_profile_(settings.flux_profile), sensors_(settings.sensors) {
+  if (settings.culprits) pfv::require_folder_of(*settings.culprits);
   if (fields_) {
     pfv::require_folder_of(fields_->path);
     field_schedule_ = PfvSchedule(fields_->every);

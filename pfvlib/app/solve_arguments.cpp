@@ -142,7 +142,7 @@ bool same_file(const std::string& one, const std::string& other) {
 /// One output must neither replace another nor the packing.
 void check_outputs(const SolveRequest& request) {
   std::vector<std::string> taken{request.packing};
-  for (const auto& output : {request.forces, request.report, request.vtk}) {
+  for (const auto& output : {request.forces, request.report, request.vtk, request.culprits}) {
     if (!output) continue;
     require_folder_of(*output);
     for (const std::string& other : taken)
@@ -280,6 +280,10 @@ void add_output_options(CLI::App& command, SolveArguments& arguments) {
                      "permeability in m2, velocity in m/s) for ParaView\n"
                      "(default: not written)")
       ->option_text("FILE.vtu")->group(group);
+  command.add_option("--culprits", arguments.culprits,
+                     "where the packing cannot be solved, the spheres and places that\n"
+                     "the error is about (default: not written)")
+      ->option_text("FILE.vtu")->group(group);
 }
 
 }  // namespace
@@ -306,6 +310,7 @@ SolveRequest request_of(const SolveArguments& arguments) {
   request.forces = arguments.forces;
   request.report = arguments.report;
   request.vtk = arguments.vtk;
+  request.culprits = arguments.culprits;
   check_outputs(request);
   return request;
 }

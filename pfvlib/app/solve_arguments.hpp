@@ -23,7 +23,7 @@ struct SolveArguments {
   std::string wall = "no_slip", viscosity = "1e-3", density = "1000", partition, solver, ordering,
       precision, threads = "1";
   std::optional<std::string> conductance, tolerance, bulk_modulus, time_step, repeat;
-  std::optional<std::string> forces, report, vtk;
+  std::optional<std::string> forces, report, vtk, culprits;
 };
 
 /// What `pfv solve` is to do.
@@ -35,7 +35,7 @@ struct SolveRequest {
   std::optional<DarcyOptions> grid;  ///< absent: the pore network
   double time_step = 0.0;  ///< s; 0: none
   int repeat = 0;          ///< further steps on the kept network
-  std::optional<std::string> forces, report, vtk;  ///< output files
+  std::optional<std::string> forces, report, vtk, culprits;  ///< output files
 };
 
 void add_solve_options(CLI::App& command, SolveArguments& arguments);

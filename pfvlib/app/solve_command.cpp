@@ -124,7 +124,12 @@ void solve(const SolveRequest& request, std::ostream& out, std::ostream& warning
   const std::unique_ptr<FlowModel> model =
       make_flow(request.box, request.fluid, request.options, request.grid);
   FlowModel& flow = *model;
-  flow.evaluate(packing, request.time_step);
+  try {
+    flow.evaluate(packing, request.time_step);
+  } catch (const Error& error) {
+    if (request.culprits) write_culprits(*request.culprits, packing, error.culprits());
+    throw;
+  }
   const StepTimes step = repeat_steps(flow, packing, request);
 
   Report report = flow.report();

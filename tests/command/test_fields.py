@@ -10,7 +10,7 @@ from vtk import VTK_LINE, VTK_VERTEX
 from vtk.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from command import DENSE, THROUGH_FLOW, CommandTest, dense_rows
+from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest, dense_rows
 
 
 def grid_of(path):
@@ -129,6 +129,38 @@ class Grains(CommandTest):
         self.assertEqual(float(entry.get("timestep")), 0.25)
         self.assertEqual(entry.get("part"), "1")
         self.assertTrue((self.folder / entry.get("file")).exists())
+
+
+
+class Culprits(CommandTest):
+    """Four spheres that close the pore between them while they approach each other."""
+
+    def setUp(self):
+        super().setUp()
+        rows = ["id,x,y,z,radius,vx,vy,vz"]
+        ways = ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
+        for number, way in enumerate(ways, 11):
+            place = [0.5 + 0.103 * step for step in way]
+            rows.append(",".join(map(str, (number, *place, 0.18, *(-0.01 * step for step in way)))))
+        rows.append("20,0.9,0.1,0.5,0.05,0,0,0")
+        self.packing = self.write("closing.csv", "\n".join(rows) + "\n")
+
+    def test_are_drawn_where_the_packing_cannot_be_solved(self):
+        result = self.run_pfv("solve", "--packing", self.packing, *UNIT_BOX, *THROUGH_FLOW,
+                              "--culprits", "culprits.vtu", "--vtk", "network.vtu")
+        self.assert_refused(result, "spheres 11, 12, 13, 14", "cut off")
+        grid = grid_of(self.folder / "culprits.vtu")
+        data = arrays_of(grid.GetPointData())
+        self.assertEqual(list(data["id"]), [11, 12, 13, 14, -1])
+        self.assertEqual(list(data["radius"]), [0.18] * 4 + [0.0])
+        for x in grid.GetPoint(4):
+            self.assertAlmostEqual(x, 0.5, delta=1e-9)
+        self.assertFalse((self.folder / "network.vtu").exists())
+
+    def test_are_not_written_where_it_can(self):
+        self.solve(*THROUGH_FLOW, "--bulk-modulus", "1e6", "--time-step", "1e-3", "--culprits",
+                   "culprits.vtu", packing=self.packing)
+        self.assertFalse((self.folder / "culprits.vtu").exists())
 
 
 if __name__ == "__main__":

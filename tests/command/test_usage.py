@@ -6,7 +6,8 @@ import unittest
 from command import DENSE, UNIT_BOX, CommandTest
 
 OPTIONS = ("packing box face patch region point wall viscosity density gravity bulk-modulus time-step "
-           "conductance solver ordering tolerance precision threads repeat forces report vtk").split()
+           "conductance solver ordering tolerance precision threads repeat forces report vtk "
+           "culprits").split()
 
 
 class Usage(CommandTest):

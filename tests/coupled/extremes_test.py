@@ -116,8 +116,9 @@ class FeedingFluid(CoupledTest):
         return read_thermo((self.folder / "log.liggghts").read_text())
 
     def test_staged_coupling_refuses_the_step(self):
-        self.refused(self.script(self.viscosity, "coupling staged", "run 20\n"), "out of control",
-                     "sphere 7", "implicit")
+        self.refused(self.script(self.viscosity, "coupling staged culprits seventh.vtu", "run 20\n"),
+                     "out of control", "sphere 7", "implicit", "drawn in seventh.vtu")
+        self.assertIn(b'NumberOfPoints="1"', (self.folder / "seventh.vtu").read_bytes())
 
     def test_auto_goes_on_with_the_implicit_coupling(self):
         energy = [row["KinEng"] for row in self.rows(self.viscosity, "coupling auto", "run 20\n")]

@@ -1,16 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace pfv {
+
+/// What an error is about, all of it: for a picture (write_culprits).
+struct Culprits {
+  std::vector<std::int64_t> spheres;          ///< ids
+  std::vector<std::array<double, 3>> places;  ///< m
+};
 
 /// Base of everything the library throws. `what()` is one line: what is wrong, where (sphere ids,
 /// place), and what to do about it.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(const std::string& what, Culprits culprits = {})
+      : std::runtime_error(what), culprits_(std::move(culprits)) {}
+  /// Empty where the error is about no sphere and no place.
+  const Culprits& culprits() const { return culprits_; }
+
+ private:
+  Culprits culprits_;
 };
 
 /// The input cannot be used: a value, a file's content, a packing or a set of boundaries that leaves

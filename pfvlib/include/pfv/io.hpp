@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "pfv/error.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/packing.hpp"
 #include "pfv/report.hpp"
@@ -39,6 +40,9 @@ struct SphereFields {
 /// Spheres as points of a .vtu: id, radius, force, velocity, mean pressure around each and `more`.
 void write_spheres(const std::string& path, const Packing& packing, const Forces& forces,
                    const SphereFields& more = {});
+
+/// The spheres and places that an error is about as points of a .vtu: id (-1 for a place) and radius (0).
+void write_culprits(const std::string& path, const Packing& packing, const Culprits& culprits);
 
 /// One time step of a .pvd collection; `file` is relative to the collection's folder.
 struct CollectionEntry {

@@ -86,7 +86,7 @@ void FlowData::refine_pressures() {
     pressures = relative_pressures.array() + reference;
     last /= largest;
   }
-  if (!(last <= hopeless)) throw SolverError(conductance_contrast(*built, fluid));
+  if (!(last <= hopeless)) throw too_far_apart(*built, fluid);
 }
 
 }  // namespace pfv

@@ -36,7 +36,8 @@ void check_values(const Packing& packing) {
                        " is not finite");
     if (!(packing.radii[k] > 0.0) || !std::isfinite(packing.radii[k]))
       throw InputError(sphere + ": its radius " + std::to_string(packing.radii[k]) +
-                       " is not a positive number");
+                           " is not a positive number",
+                       {{packing.ids[k]}, {}});
     if (packing.velocities.cols() > 0 && !packing.velocities.col(k).allFinite())
       throw InputError(sphere + ": its velocity " + place(packing.velocities.col(k)) +
                        " is not finite");
@@ -51,7 +52,8 @@ void refuse_giants(const Packing& packing, const Box& box) {
     if (packing.radii[k] > largest)
       throw InputError("sphere " + std::to_string(packing.ids[k]) + ": its radius " +
                        detail::number_text(packing.radii[k]) +
-                       " m is more than a thousand times the size of the box; is it in metres?");
+                           " m is more than a thousand times the size of the box; is it in metres?",
+                       {{packing.ids[k]}, {}});
 }
 
 void refuse_repeated_ids(const Packing& packing) {
@@ -59,7 +61,8 @@ void refuse_repeated_ids(const Packing& packing) {
   std::sort(ids.begin(), ids.end());
   const auto twice = std::adjacent_find(ids.begin(), ids.end());
   if (twice != ids.end())
-    throw InputError("sphere id " + std::to_string(*twice) + " occurs twice; ids must be unique");
+    throw InputError("sphere id " + std::to_string(*twice) + " occurs twice; ids must be unique",
+                     {{*twice}, {}});
 }
 
 }  // namespace
@@ -96,7 +99,8 @@ ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains
       throw InputError("sphere " + std::to_string(packing.ids[k]) + ": its centre " +
                        place(packing.positions.col(k)) + " is not inside the box from " +
                        place(box.lower) + " to " + place(box.upper) +
-                       "; enlarge the box or remove the sphere");
+                           "; enlarge the box or remove the sphere",
+                       {{packing.ids[k]}, {}});
     }
   }
   const auto n = static_cast<Eigen::Index>(grains.columns.size());

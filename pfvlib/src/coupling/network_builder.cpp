@@ -65,7 +65,7 @@ void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double
       built.solver->factor(built.system.matrix);
     } catch (const SolverError& error) {
       built.solver.reset();
-      throw SolverError(conductance_contrast(built, settings.fluid) + " (" + error.what() + ")");
+      throw too_far_apart(built, settings.fluid, error.what());
     }
     ++cost.counts.factor;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "pfv/error.hpp"
 #include "coupling/built_network.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/report.hpp"
@@ -43,6 +44,7 @@ void make_volume_rates(BuiltNetwork& built);
 void make_force_matrices(BuiltNetwork& built, const Options& options, Counts& counts);
 
 /// Why a network cannot be factored: where its conductances are the smallest and the largest.
-std::string conductance_contrast(const BuiltNetwork& built, const Fluid& fluid);
+SolverError too_far_apart(const BuiltNetwork& built, const Fluid& fluid,
+                          const std::string& reason = {});
 
 }  // namespace pfv

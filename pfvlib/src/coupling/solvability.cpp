@@ -40,6 +40,24 @@ std::vector<int> spheres_around(const BuiltNetwork& built, const std::vector<int
   return spheres;
 }
 
+Culprits culprits_of(const BuiltNetwork& built, const std::vector<int>& spheres,
+                     const std::vector<int>& pores) {
+  Culprits culprits;
+  for (const int sphere : spheres) culprits.spheres.push_back(built.grains.spheres.ids[sphere]);
+  for (const int pore : pores) {
+    const Eigen::Vector3d x = built.network.origin + built.network.pore_centres.col(pore);
+    culprits.places.push_back({x[0], x[1], x[2]});
+  }
+  return culprits;
+}
+
+std::vector<int> spheres_at(const PoreNetwork& network, int throat) {
+  std::vector<int> spheres;
+  for (const Vertex vertex : network.facet_vertices[network.throat_facets[throat]])
+    if (!is_wall(vertex)) spheres.push_back(network.vertex_sphere[vertex]);
+  return spheres;
+}
+
 }  // namespace
 
 void FlowData::refuse_undetermined(bool moving_now) const {
@@ -58,7 +76,8 @@ void FlowData::refuse_undetermined(bool moving_now) const {
 
 /// The factor needs the digits by which what leaves a group of pores differs from what its own throats
 /// could carry: with fewer than sixteen there are none left.
-std::string conductance_contrast(const BuiltNetwork& built, const Fluid& fluid) {
+SolverError too_far_apart(const BuiltNetwork& built, const Fluid& fluid,
+                          const std::string& reason) {
   const PoreNetwork& network = built.network;
   const std::vector<double>& c = built.conductances.value;
   int weakest = -1, strongest = -1;
@@ -67,20 +86,24 @@ std::string conductance_contrast(const BuiltNetwork& built, const Fluid& fluid) 
     if (weakest < 0 || c[t] < c[weakest]) weakest = t;
     if (strongest < 0 || c[t] > c[strongest]) strongest = t;
   }
-  if (weakest < 0) return {};
+  if (weakest < 0) return SolverError(reason);
+  std::vector<int> named, pores;
   const auto name = [&](int t) {
-    std::vector<int> spheres;
-    for (const Vertex vertex : network.facet_vertices[network.throat_facets[t]])
-      if (!is_wall(vertex)) spheres.push_back(network.vertex_sphere[vertex]);
+    const std::vector<int> spheres = spheres_at(network, t);
+    named.insert(named.end(), spheres.begin(), spheres.end());
+    pores.push_back(network.throat_pores[t][0]);
     std::ostringstream text;
     text << c[t] << " m3/(Pa s) near " << place_of(built, network.throat_pores[t][0]) << " at "
          << sphere_list(built.grains.spheres.ids, spheres);
     return text.str();
   };
-  return "the conductances of the throats reach from " + name(weakest) + " to " + name(strongest) +
-         (fluid.bulk_modulus ? ", and the fluid stores little in a time step" : "") +
-         ": too far apart for sixteen digits; remove spheres that nearly coincide or close their "
-         "pores" + (fluid.bulk_modulus ? ", or take a shorter time step" : "");
+  std::string text =
+      "the conductances of the throats reach from " + name(weakest) + " to " + name(strongest) +
+      (fluid.bulk_modulus ? ", and the fluid stores little in a time step" : "") +
+      ": too far apart for sixteen digits; remove spheres that nearly coincide or close their "
+      "pores" + (fluid.bulk_modulus ? ", or take a shorter time step" : "");
+  if (!reason.empty()) text += " (" + reason + ")";
+  return SolverError(text, culprits_of(built, named, pores));
 }
 
 /// A set of pores without any way to a pressure can only be at rest.
@@ -106,13 +129,15 @@ void FlowData::refuse_isolated(const std::vector<Isolated>& held) const {
     if (std::abs(net) <= 1e-10 * gross + noise) continue;
     std::ostringstream rate;
     rate << net;
+    const std::vector<int> spheres = spheres_around(*built, isolated.pores);
     throw InputError(
         std::to_string(isolated.pores.size()) + " pore(s) near " +
-        place_of(*built, isolated.pores.front()) + " between " +
-        sphere_list(built->grains.spheres.ids, spheres_around(*built, isolated.pores)) +
-        " are cut off from every pressure, but " + rate.str() +
-        " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk "
-        "modulus, or reduce the overlaps");
+            place_of(*built, isolated.pores.front()) + " between " +
+            sphere_list(built->grains.spheres.ids, spheres) +
+            " are cut off from every pressure, but " + rate.str() +
+            " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk "
+            "modulus, or reduce the overlaps",
+        culprits_of(*built, spheres, isolated.pores));
   }
 }
 

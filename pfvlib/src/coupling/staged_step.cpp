@@ -149,7 +149,10 @@ void FlowData::refuse_feeding(const Eigen::Matrix3Xd& change, const Eigen::Matri
        << "at " << who << ": it changed velocities " << std::sqrt(gained.sum() / explicit_sum)
        << " times as much as an explicit step would, where a fluid that brakes stays below; take the "
           "implicit coupling or a much shorter step";
-  throw UnstableStep(text.str());
+  Culprits culprits;
+  if (worst < spheres)
+    culprits.spheres.push_back(built->grains.spheres.ids[static_cast<std::size_t>(worst)]);
+  throw UnstableStep(text.str(), culprits);
 }
 
 }  // namespace pfv

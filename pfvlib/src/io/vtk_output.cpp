@@ -148,6 +148,36 @@ void write_spheres(const std::string& path, const Packing& packing, const Forces
   detail::write_file(path, file.text());
 }
 
+void write_culprits(const std::string& path, const Packing& packing, const Culprits& culprits) {
+  Integers ids;
+  Numbers radii;
+  std::vector<Eigen::Vector3d> places;
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    const auto& named = culprits.spheres;
+    if (std::find(named.begin(), named.end(), packing.ids[k]) == named.end() ||
+        !packing.positions.col(k).allFinite())
+      continue;
+    ids.push_back(packing.ids[k]);
+    radii.push_back(packing.radii[k]);
+    places.push_back(packing.positions.col(k));
+  }
+  for (const auto& place : culprits.places) {
+    ids.push_back(-1);
+    radii.push_back(0.0);
+    places.emplace_back(place.data());
+  }
+  const auto n = static_cast<std::int64_t>(ids.size());
+  VtuFile file(n, n);
+  add_points(file, Eigen::Map<const Eigen::Matrix3Xd>(
+                       places.empty() ? nullptr : places.front().data(), 3, n));
+  add_vertex_cells(file, ids.size());
+  file.begin("PointData");
+  file.add("id", ids.data(), n);
+  file.add("radius", radii.data(), n);
+  file.end("PointData");
+  detail::write_file(path, file.text());
+}
+
 void write_collection(const std::string& path, const std::vector<CollectionEntry>& entries) {
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";

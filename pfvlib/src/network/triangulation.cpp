@@ -125,7 +125,8 @@ void refuse_equal_centres(const Spheres& spheres) {
     if (key(order[i - 1]) == key(order[i]))
       throw InputError("spheres " + std::to_string(spheres.ids[order[i - 1]]) + " and " +
                        std::to_string(spheres.ids[order[i]]) +
-                       " have the same centre; remove or move one of them");
+                           " have the same centre; remove or move one of them",
+                       {{spheres.ids[order[i - 1]], spheres.ids[order[i]]}, {}});
 }
 
 }  // namespace
