@@ -74,7 +74,7 @@ double median(std::vector<Times> runs, const Member& member) {
 
 /// `n`: steps from network to network.
 void compare(int spheres, int n) {
-  constexpr int repeats = 3, networks = 3;
+  constexpr int repeats = 3, networks = 2;
   const Column column(spheres);
   Options kept;
   kept.retriangulation_strain = std::numeric_limits<double>::infinity();
@@ -119,5 +119,5 @@ int main(int argc, char** argv) {
             "ms a step: within | beside | saved | wall, ms a step: within | beside | of it waited |\n"
             "|--|--|--|--|--|--|--|--|--|--|");
   for (const int spheres : sizes)
-    for (const int n : {200, 600}) compare(spheres, n);
+    for (const int n : {100, 400}) compare(spheres, n);
 }
