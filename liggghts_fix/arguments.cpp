@@ -243,6 +243,12 @@ void parse_model(Words& words, PfvSettings& settings) {
   settings.grid = grid;
 }
 
+void parse_retriangulation(Words& words, pfv::Options& options) {
+  const bool mean = words.take("mean");
+  options.strain_measure = mean ? pfv::StrainMeasure::mean : pfv::StrainMeasure::largest;
+  options.retriangulation_strain = words.number("the strain");
+}
+
 void parse_keyword(Words& words, PfvSettings& settings) {
   const std::string keyword = words.keyword();
   if (keyword == "viscosity") settings.fluid.viscosity = words.number("the viscosity");
@@ -255,8 +261,7 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "region") parse_region(words, settings, false);
   else if (keyword == "point") parse_region(words, settings, true);
   else if (keyword == "pressure_profile") parse_pressure_profile(words, settings);
-  else if (keyword == "retriangulate")
-    settings.options.retriangulation_strain = words.number("the strain");
+  else if (keyword == "retriangulate") parse_retriangulation(words, settings.options);
   else if (keyword == "rebuild_lag")
     settings.options.rebuild_lag = words.count("the number of flow steps", 0);
   else if (keyword == "couple_every") settings.couple_every = words.count("the number of steps");

@@ -43,6 +43,12 @@ class RebuildLag(CoupledTest):
         self.assertLess(error["lagging"], (1 + 4 / 12 + 0.15) * error["prompt"])
         self.assertLess(max(row["flow[3]"] for row in rows), 1e-9)  # mass error
 
+    def test_the_mean_strain_leads_to_fewer_networks(self):
+        networks = [self.run_with(f"retriangulate {measure}{STRAIN / 25}")[1][-1]["flow[5]"]
+                    for measure in ("", "mean ")]
+        self.assertGreater(networks[1], 0)
+        self.assertGreater(networks[0], 10 * networks[1])
+
     def test_on_two_ranks(self):
         _, rows, _, screen = self.run_with("rebuild_lag 4", ranks=2)
         self.assertIn(f"built in the background {rows[-1]['flow[5]']:.0f} ", screen)

@@ -33,6 +33,11 @@ enum class Partition { signed_angles, yade };
 /// What to do with a grain whose centre is not inside the flow box.
 enum class OutsideGrains { refuse, leave_out };
 
+/// The strain that leads to a new network. `largest`: the sum over the steps of the largest |dV/dt| dt / V
+/// of all pores (thesis eqs. 5.13-5.14). `mean`: sum of |V - V_0| over sum of V_0, V_0 the pores' volumes
+/// when the network was built: one pore does not count for all, nor does what is undone.
+enum class StrainMeasure { largest, mean };
+
 constexpr double default_tolerance = 1e-10;
 
 struct Options {
@@ -47,8 +52,9 @@ struct Options {
   /// Threads that share a step, 1 ... 64. They change no byte of any result.
   int threads = 1;
   OutsideGrains outside = OutsideGrains::refuse;
-  /// Accumulated pore strain at which `Flow::step` triangulates anew (thesis eqs. 5.13-5.14), > 0.
+  /// Accumulated pore strain at which `Flow::step` triangulates anew, > 0.
   double retriangulation_strain = 0.01;
+  StrainMeasure strain_measure = StrainMeasure::largest;
   /// K > 0: when that strain is reached, another thread builds the next network from the grains as
   /// they are, while the steps go on with the old one; the K-th step after takes it up, and waits
   /// where it must. Same bytes in every run. 0: the step itself builds it. Explicit and staged
@@ -72,6 +78,7 @@ const char* name_of(Partition partition);
 const char* name_of(SolverKind solver);
 const char* name_of(OrderingKind ordering);
 const char* name_of(Precision precision);
+const char* name_of(StrainMeasure measure);
 ConductanceLaw conductance_law_named(const std::string& name);
 Partition partition_named(const std::string& name);
 SolverKind solver_named(const std::string& name);

@@ -94,7 +94,7 @@ void FlowData::rebuild_now(const Packing& packing) {
   packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
   take_up(std::move(fresh));
   stale = false;
-  strain = 0.0;
+  strain = strain_taken_over = 0.0;
 }
 
 void FlowData::refuse_lag(Coupling coupling) const {
@@ -107,6 +107,7 @@ void FlowData::begin_next(const Packing& packing, double step) {
   next.emplace(packing, build_settings(), step, built->volume_rate_matrix.has_value());
   steps_to_next = options.rebuild_lag;
   strain_before_next = strain;
+  changes_before_next = volume_changes;
 }
 
 void FlowData::take_up_next() {
@@ -114,8 +115,10 @@ void FlowData::take_up_next() {
   std::unique_ptr<BuiltNetwork> fresh = next->take({counts, seconds});
   wall_waited += wall_seconds() - start;
   next.reset();
+  strain = changes_before_next.size() > 0 ? mean_strain(volume_changes - changes_before_next)
+                                          : strain - strain_before_next;
+  strain_taken_over = strain;
   take_up(std::move(fresh));
-  strain -= strain_before_next;
 }
 
 /// Carries over what is kept of the old network: the pressures of a compressible fluid and those
@@ -136,6 +139,7 @@ void FlowData::take_up(std::unique_ptr<BuiltNetwork> fresh) {
   take_over(old_pressures, pending_pressures);
   take_over(lagged, pending_lagged);
   if (fluid.bulk_modulus && old_pressures.size() == 0) old_pressures.setZero(pores);
+  if (options.strain_measure == StrainMeasure::mean) volume_changes.setZero(pores);
   solution.setZero(built->unknowns.count);  // no trace of the old network in what follows
   counts.degenerate_throats = built->conductances.degenerate;
   counts.merged_pores = built->network.cells() - pores;
@@ -282,8 +286,18 @@ void FlowData::compute_forces(const Packing& packing) {
 
 void FlowData::add_strain(double step) {
   if (!moving || built->network.pores() == 0) return;
+  if (options.strain_measure == StrainMeasure::mean) {
+    volume_changes += step * rates;
+    strain = strain_taken_over + mean_strain(volume_changes);
+    return;
+  }
   const Eigen::Map<const Eigen::ArrayXd> volumes(built->strain_volume.data(), rates.size());
   strain += (rates.array().abs() / volumes).maxCoeff() * step;
+}
+
+double FlowData::mean_strain(const Eigen::VectorXd& changes) const {
+  const Eigen::Map<const Eigen::ArrayXd> volumes(built->strain_volume.data(), changes.size());
+  return changes.cwiseAbs().sum() / volumes.sum();
 }
 
 }  // namespace pfv

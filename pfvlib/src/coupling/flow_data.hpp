@@ -35,7 +35,10 @@ struct FlowData {
   std::optional<BackgroundRebuild> next;  ///< the network that comes after `built`
   int steps_to_next = 0;                  ///< until it is taken up
   double strain_before_next = 0.0;        ///< had accumulated when it was begun
+  Eigen::VectorXd changes_before_next;    ///< `volume_changes` then
   double time = 0.0, strain = 0.0;
+  double strain_taken_over = 0.0;  ///< what the grains of the network had strained when it was taken up
+  Eigen::VectorXd volume_changes;  ///< of its pores since, m³; empty unless the mean strain is wanted
   std::int64_t retriangulations = 0;
   Counts counts;
   Seconds seconds;
@@ -121,6 +124,8 @@ struct FlowData {
   void factor_implicit(const Eigen::RowVectorXd& per_mass);
   void end_step(double step, Coupling coupling);
   void add_strain(double step);
+  /// Sum of |changes| over sum of volumes.
+  double mean_strain(const Eigen::VectorXd& changes) const;
 
   Eigen::Matrix3Xd velocities;  ///< of the active spheres
   Eigen::VectorXd sources, mean_pressures;

@@ -37,6 +37,8 @@ constexpr std::array<Named<OrderingKind>, 4> orderings{{{OrderingKind::automatic
                                                         {OrderingKind::geometric, "geometric"},
                                                         {OrderingKind::metis, "metis"},
                                                         {OrderingKind::amd, "amd"}}};
+constexpr std::array<Named<StrainMeasure>, 2> strain_measures{
+    {{StrainMeasure::largest, "largest"}, {StrainMeasure::mean, "mean"}}};
 constexpr std::array<Named<Precision>, 2> precisions{
     {{Precision::full, "double"}, {Precision::mixed, "mixed"}}};
 
@@ -198,6 +200,9 @@ const char* name_of(Partition partition) {
 const char* name_of(SolverKind solver) { return name_in(solvers, solver, "solver"); }
 const char* name_of(OrderingKind ordering) { return name_in(orderings, ordering, "ordering"); }
 const char* name_of(Precision precision) { return name_in(precisions, precision, "precision"); }
+const char* name_of(StrainMeasure measure) {
+  return name_in(strain_measures, measure, "strain measure");
+}
 
 ConductanceLaw conductance_law_named(const std::string& name) {
   return value_in(conductance_laws, name, "conductance law");
@@ -245,6 +250,7 @@ void check(const Options& options) {
   if (!(options.retriangulation_strain > 0))  // infinite: never, as far as strain goes
     throw InputError("retriangulation strain is " + number_text(options.retriangulation_strain) +
                      ": give a number > 0");
+  name_of(options.strain_measure);
   check_lag(options);
   check(options.solver, options.ordering);
   if (!(options.tolerance > 0.0 && options.tolerance < 1.0))

@@ -73,6 +73,7 @@ void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options)
   refuse_if(options.conductance != defaults.conductance, "conductance law");
   refuse_if(options.retriangulation_strain != defaults.retriangulation_strain,
             "retriangulation strain");
+  refuse_if(options.strain_measure != defaults.strain_measure, "strain measure");
   refuse_if(options.rebuild_lag != defaults.rebuild_lag, "rebuild lag");
 }
 

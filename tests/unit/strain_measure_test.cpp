@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which strain of the pores leads to a new network.
+#include "coupling/built_network.hpp"
+#include "pfv/pfv.hpp"
+#include "physics/volume_rates.hpp"
+#include "support/boxes.hpp"
+#include "support/packings.hpp"
+#include "support/stages.hpp"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace support;
+
+constexpr double dt = 1e-3;
+
+/// 60 grains below a drained piston.
+struct Piston {
+  pfv::PackingArrays packing = random_packing(60, 0.05, 0.1, 3);
+  pfv::Box box;
+
+  Piston() {
+    box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+    packing.velocities = Eigen::Matrix3Xd::Zero(3, packing.positions.cols());
+  }
+  void sink(double rate) {
+    box[pfv::Face::zhi].velocity = -rate;
+    packing.velocities.row(2) = -rate * packing.positions.row(2);
+  }
+  pfv::Flow flow(pfv::StrainMeasure measure) const {
+    pfv::Options options;
+    options.strain_measure = measure;
+    return pfv::Flow(box, viscosity_one(), options);
+  }
+};
+
+TEST(StrainMeasure, MeanIsTheSumOfAllChangesOverTheSumOfAllVolumes) {
+  Piston piston;
+  piston.sink(1.0);
+  const Stages s = stages_of(piston.packing, piston.box);
+  const Eigen::VectorXd rates = pfv::volume_rates(pfv::volume_rate_matrix(s.network, s.spheres),
+                                                  piston.packing.velocities, piston.box);
+  double volume = 0.0;
+  for (const double one : pfv::strain_volumes(s.network, s.throats, s.spheres)) volume += one;
+  pfv::Flow flow = piston.flow(pfv::StrainMeasure::mean);
+  flow.step(piston.packing.view(), dt);
+  flow.step(piston.packing.view(), 2.0 * dt);
+  EXPECT_NEAR(flow.strain() / (3.0 * dt * rates.cwiseAbs().sum() / volume), 1.0, 1e-12);
+}
+
+TEST(StrainMeasure, WhatIsUndoneDoesNotCountForTheMean) {
+  for (const auto measure : {pfv::StrainMeasure::mean, pfv::StrainMeasure::largest}) {
+    Piston piston;
+    pfv::Flow flow = piston.flow(measure);
+    for (const double rate : {1.0, -1.0}) {
+      piston.sink(rate);
+      flow.set_box(piston.box);
+      flow.step(piston.packing.view(), dt);
+    }
+    if (measure == pfv::StrainMeasure::mean)
+      EXPECT_LT(flow.strain(), 1e-15);
+    else
+      EXPECT_GT(flow.strain(), 2e-3);
+  }
+}
+
+/// New networks while one grain of 60 flutters by a fifth of its radius.
+std::int64_t networks_of_a_fluttering_grain(pfv::StrainMeasure measure) {
+  Piston piston;
+  pfv::Flow flow = piston.flow(measure);
+  for (int step = 0; step < 40; ++step) {
+    const double direction = step / 10 % 2 == 0 ? 1.0 : -1.0;
+    piston.packing.velocities(0, 5) = direction * 0.02 * piston.packing.radii[5] / dt;
+    flow.step(piston.packing.view(), dt);
+    piston.packing.positions += dt * piston.packing.velocities;
+  }
+  return flow.retriangulations();
+}
+
+TEST(StrainMeasure, OneGrainLeadsToNewNetworksByTheLargestStrainAlone) {
+  EXPECT_GT(networks_of_a_fluttering_grain(pfv::StrainMeasure::largest), 10);
+  EXPECT_EQ(networks_of_a_fluttering_grain(pfv::StrainMeasure::mean), 0);
+}
+
+}  // namespace
