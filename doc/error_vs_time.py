@@ -175,10 +175,11 @@ def against_first(rows):
 
 
 # the sum of the largest strains (thesis), a lag of the new network, the mean strain
-THRESHOLDS = [(f"{100 * s:g} %", f"retriangulate {s:g}") for s in (1e-4, 5e-4, 1e-3, 1e-2, 5e-2)]
+THRESHOLDS = [(f"{100 * s:g} %", f"retriangulate {s:g}") for s in (1e-4, 1e-3, 5e-3, 1e-2, 2e-2, 5e-2)]
 THRESHOLDS += [("never", "retriangulate 1e9")]
 THRESHOLDS += [(f"1 %, `rebuild_lag` {k}", f"retriangulate 0.01 rebuild_lag {k}") for k in (10, 40)]
-THRESHOLDS += [(f"mean {100 * s:g} %", f"retriangulate mean {s:g}") for s in (2e-4, 1e-3, 2e-3, 5e-3)]
+THRESHOLDS += [(f"mean {100 * s:g} %", f"retriangulate mean {s:g}")
+               for s in (2e-4, 5e-4, 1e-3, 2e-3, 5e-3)]
 
 
 def measure_thresholds():
@@ -202,7 +203,7 @@ def write_thresholds(rows):
                      f"{100 * row['p_max']:.3f} % | {100 * row['U_rms']:.3f}, "
                      f"{100 * row['U_max']:.3f} % | {row['cpu']:.1f} | "
                      f"{row['cpu'] / row['dry']:.2f} |")
-    draw_runs(rows, "thresholds", lambda r: r["threshold"].replace("`", ""))
+    draw_runs(rows, "thresholds", lambda r: str(r["threshold"]).replace("`", ""))
     return "\n".join(lines)
 
 
