@@ -17,11 +17,25 @@ build_project
 echo "unit tests under the address and undefined-behaviour sanitizers"
 cmake -S "$root" --preset sanitize > /dev/null
 cmake --build "$root/build-sanitize" --target unit_tests
-# METIS, CHOLMOD and MPI keep memory until the process ends: their business
+# leaks: in the long test, without the slowness of both
 ASAN_OPTIONS=detect_leaks=0 "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
 
 if [ "${1:-}" = long ]; then
   export PFV_REBUILDS=2000
+  echo "fuzz under the address, leak and undefined-behaviour sanitizers"
+  cmake --build "$root/build-sanitize" --target fuzz
+  UBSAN_OPTIONS=halt_on_error=1 "$root/build-sanitize/bin/fuzz" --count 1000 --seed 1
+  echo "unit tests, fuzz and coupled runs under the leak sanitizer"
+  cmake -S "$root" --preset leaks > /dev/null
+  cmake --build "$root/build-leaks"
+  "$root/build-leaks/bin/unit_tests" --gtest_brief=1
+  "$root/build-leaks/bin/fuzz" --count 1000 --seed 1
+  logs=$(mktemp -d)
+  LSAN_OPTIONS=log_path=$logs/leak:exitcode=0:fast_unwind_on_malloc=0 \
+    ctest --test-dir "$root/build-leaks" --output-on-failure \
+      -R '^coupled\.(restart|implicit|ranks|extremes)$'
+  "$root/tests/leaks.py" "$logs"/leak.*
+  rm -r "$logs"
   "$root/build/bin/fuzz" --count 10000 --seed 1
   "$root/build/bin/fuzz" --count 10000 --seed 2
   "$root/run.sh" oedometer N=5000
