@@ -180,17 +180,20 @@ double Flow::plane_pressure(int axis, double position) const {
   const double relative = position - built.network.origin[axis];
   std::optional<CellExtents>& extents = data_->built->cell_extents[axis];
   if (!extents) extents = cell_extents(built.network, built.vertices, axis);
-  std::vector<int> cut;
-  for (int c = 0; c < built.network.cells(); ++c)
-    if (extents->low[c] <= relative && relative <= extents->high[c])
-      cut.push_back(built.network.cell_pore[c]);
-  std::sort(cut.begin(), cut.end());
-  cut.erase(std::unique(cut.begin(), cut.end()), cut.end());
-  if (cut.empty())
-    throw InputError("the plane at " + std::to_string(position) + " m cuts no pore");
+  std::vector<char> counted(built.network.pores(), 0);  // a pore may have several cells
   double sum = 0.0;
-  for (const int pore : cut) sum += data_->pressures[pore];
-  return sum / static_cast<double>(cut.size());
+  int count = 0;
+  for (int c = 0; c < built.network.cells(); ++c) {
+    if (extents->low[c] > relative || relative > extents->high[c]) continue;
+    const int pore = built.network.cell_pore[c];
+    if (counted[pore]) continue;
+    counted[pore] = 1;
+    sum += data_->pressures[pore];
+    ++count;
+  }
+  if (count == 0)
+    throw InputError("the plane at " + std::to_string(position) + " m cuts no pore");
+  return sum / count;
 }
 
 double Flow::mean_pressure() const {

@@ -36,7 +36,7 @@ Eigen::Matrix3Xd Flow::sphere_velocities() const {
   const int active = built.grains.spheres.size();
   const SurfacePressure around = built.surface_pressure
                                      ? *built.surface_pressure
-                                     : surface_pressure(built.network, built.vertices, active);
+                                     : surface_pressure(built.network, built.vertices, built.grains.spheres);
   Eigen::Matrix3Xd result =
       Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(data_->packing_ids.size()));
   for (int sphere = 0; sphere < active; ++sphere) {
@@ -57,7 +57,8 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_stresses() const {
   const int active = built.grains.spheres.size();
   const Stresses stresses =
       pfv::sphere_stresses(built.network, built.throats, built.viscous_shares, built.vertices,
-                           data_->pressures, active);
+                           data_->pressures, built.grains.spheres,
+                           data_->solved_box.pressure_gradient);
   Stresses result = Stresses::Zero(6, static_cast<Eigen::Index>(data_->packing_ids.size()));
   for (int sphere = 0; sphere < active; ++sphere)
     result.col(built.grains.columns[sphere]) = stresses.col(sphere);

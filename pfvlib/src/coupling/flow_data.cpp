@@ -279,6 +279,8 @@ void FlowData::compute_forces(const Packing& packing) {
   }
   if (options.sphere_pressure) {
     multiply(*built->surface_pressure, pressures, *team, mean_pressures);
+    if (!box.pressure_gradient.isZero(0.0))
+      mean_pressures -= built->surface_pressure->offset.transpose() * box.pressure_gradient;
     forces.sphere_pressure.setZero(n);
     for (Eigen::Index i = 0; i < active; ++i) forces.sphere_pressure[columns[i]] = mean_pressures[i];
   }

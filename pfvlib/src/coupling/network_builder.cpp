@@ -91,7 +91,8 @@ void make_force_matrices(BuiltNetwork& built, const Options& options, Counts& co
   if (options.shear_viscous)
     built.shear_pairs = shear_pairs(built.network, built.throats, built.vertices);
   if (options.sphere_pressure)
-    built.surface_pressure = surface_pressure(built.network, built.vertices, active);
+    built.surface_pressure =
+        surface_pressure(built.network, built.vertices, built.grains.spheres);
 }
 
 }  // namespace pfv

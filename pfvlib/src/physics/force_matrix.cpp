@@ -185,21 +185,27 @@ Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& thro
 }
 
 SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& vertices,
-                                 int spheres) {
-  std::vector<std::vector<std::pair<int, double>>> rows(spheres);
+                                 const Spheres& spheres) {
+  std::vector<std::vector<std::pair<int, double>>> rows(spheres.size());
+  SurfacePressure matrix;
+  matrix.offset = Eigen::Matrix3Xd::Zero(3, spheres.size());
   for (int c = 0; c < network.cells(); ++c) {
     const auto& cell = network.cell_vertices[c];
     for (int i = 0; i < 4 && !is_wall(cell[i]); ++i) {
       const double angle = std::abs(solid_angle(vertices.towards(cell[i], cell[(i + 1) % 4]),
                                                 vertices.towards(cell[i], cell[(i + 2) % 4]),
                                                 vertices.towards(cell[i], cell[(i + 3) % 4])));
-      rows[network.vertex_sphere[cell[i]]].emplace_back(network.cell_pore[c], angle);
+      const int sphere = network.vertex_sphere[cell[i]];
+      rows[sphere].emplace_back(network.cell_pore[c], angle);
+      matrix.offset.col(sphere) +=
+          angle * (vertices.centres.col(cell[i]) - spheres.centres.col(sphere));
     }
   }
-  SurfacePressure matrix;
-  for (const auto& row : rows) {
+  for (std::size_t sphere = 0; sphere < rows.size(); ++sphere) {
+    const auto& row = rows[sphere];
     double sum = 0.0;
     for (const auto& [pore, angle] : row) sum += angle;
+    if (sum > 0.0) matrix.offset.col(static_cast<Eigen::Index>(sphere)) /= sum;
     for (const auto& [pore, angle] : row) {
       matrix.pore.push_back(pore);
       matrix.weight.push_back(angle / sum);

@@ -61,12 +61,15 @@ Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& thro
                                  const Eigen::Vector3d& gradient);
 
 /// Mean pressure over each sphere's surface: pores weighted with the solid angle of their cells, Pa.
+/// Around an image a macroscopic gradient has raised it by the gradient times the image's offset.
 struct SurfacePressure {
   std::vector<int> row_begin{0};
   std::vector<int> pore;
   std::vector<double> weight;
+  Eigen::Matrix3Xd offset;  ///< mean offset of the images whose cells surround each sphere, m
 };
-SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& vertices, int spheres);
+SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& vertices,
+                                 const Spheres& spheres);
 void multiply(const SurfacePressure& matrix, const Eigen::VectorXd& pressures, Team& team,
               Eigen::VectorXd& mean);
 

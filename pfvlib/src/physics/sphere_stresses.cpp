@@ -3,6 +3,7 @@
 
 #include "geometry/solid_angle.hpp"
 #include "physics/pore_velocities.hpp"
+#include "solve/pressure_system.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -45,8 +46,9 @@ void add(Stresses& stresses, int sphere, const Eigen::Matrix3d& moment) {
 
 Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats,
                          const ViscousShares& shares, const Spheres& vertices,
-                         const Eigen::VectorXd& pressures, int spheres) {
-  Stresses stresses = Stresses::Zero(6, spheres);
+                         const Eigen::VectorXd& pressures, const Spheres& spheres,
+                         const Eigen::Vector3d& gradient) {
+  Stresses stresses = Stresses::Zero(6, spheres.size());
   for (int c = 0; c < network.cells(); ++c) {
     const auto& cell = network.cell_vertices[c];
     for (int i = 0; i < 4 && !is_wall(cell[i]); ++i) {
@@ -54,15 +56,17 @@ Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats,
                             y = vertices.towards(cell[i], cell[(i + 2) % 4]),
                             z = vertices.towards(cell[i], cell[(i + 3) % 4]);
       const bool positive = solid_angle(x, y, z) >= 0.0;
-      add(stresses, network.vertex_sphere[cell[i]],
-          -3.0 / (4.0 * pi) * pressures[network.cell_pore[c]] *
+      const int sphere = network.vertex_sphere[cell[i]];
+      const Eigen::Vector3d offset = vertices.centres.col(cell[i]) - spheres.centres.col(sphere);
+      add(stresses, sphere,
+          -3.0 / (4.0 * pi) * (pressures[network.cell_pore[c]] - gradient.dot(offset)) *
               (positive ? second_moment(x, y, z) : second_moment(x, z, y)));
     }
   }
   for (int t = 0; t < network.throats(); ++t) {
-    const auto [i, j] = network.throat_pores[t];
-    const Eigen::Vector3d force =
-        throats.fluid_area[t] * (pressures[i] - pressures[j]) * throats.normal.col(t);
+    const Eigen::Vector3d force = throats.fluid_area[t] *
+                                  driving_pressure(network, t, pressures, gradient) *
+                                  throats.normal.col(t);
     for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
       const Eigen::Vector3d middle = facet_middle(network.facet_vertices[f], vertices);
       for (int k = 0; k < 3; ++k) {
