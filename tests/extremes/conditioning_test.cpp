@@ -77,7 +77,7 @@ Vector extended_pressures(const pfv::PoreNetwork& network, const std::vector<dou
   return p;
 }
 
-constexpr double refined_to = 1e-10;  // FlowData::refine_pressures; 2e-12 was measured
+constexpr double refined_to = 1e-10;  // 2e-12 was measured
 
 struct Conditioning {
   double span;          ///< largest over smallest conductance that is not 0

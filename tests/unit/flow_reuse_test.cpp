@@ -4,6 +4,7 @@
 #include "pfv/pfv.hpp"
 #include "physics/volume_rates.hpp"
 #include "support/boxes.hpp"
+#include "support/drained_piston.hpp"
 #include "support/packings.hpp"
 #include "support/stages.hpp"
 
@@ -16,17 +17,9 @@ using namespace support;
 
 constexpr double dt = 1e-3;
 
-/// 60 grains that sink with v = (0, 0, -z) under a drained piston.
-struct Piston {
-  pfv::PackingArrays packing = random_packing(60, 0.05, 0.1, 3);
-  pfv::Box box;
-
-  Piston() {
-    box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
-    box[pfv::Face::zhi].velocity = -1.0;
-    packing.velocities = Eigen::Matrix3Xd::Zero(3, packing.positions.cols());
-    packing.velocities.row(2) = -packing.positions.row(2);
-  }
+/// The grains sink with v = (0, 0, -z).
+struct Piston : DrainedPiston {
+  Piston() { sink(1.0); }
   /// max |dV/dt| / V over the pores, 1/s (thesis eqs. 5.13-5.14).
   double strain_rate() const {
     const Stages s = stages_of(packing, box);

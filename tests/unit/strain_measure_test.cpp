@@ -4,7 +4,7 @@
 #include "pfv/pfv.hpp"
 #include "physics/volume_rates.hpp"
 #include "support/boxes.hpp"
-#include "support/packings.hpp"
+#include "support/drained_piston.hpp"
 #include "support/stages.hpp"
 
 #include <gtest/gtest.h>
@@ -15,19 +15,7 @@ using namespace support;
 
 constexpr double dt = 1e-3;
 
-/// 60 grains below a drained piston.
-struct Piston {
-  pfv::PackingArrays packing = random_packing(60, 0.05, 0.1, 3);
-  pfv::Box box;
-
-  Piston() {
-    box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
-    packing.velocities = Eigen::Matrix3Xd::Zero(3, packing.positions.cols());
-  }
-  void sink(double rate) {
-    box[pfv::Face::zhi].velocity = -rate;
-    packing.velocities.row(2) = -rate * packing.positions.row(2);
-  }
+struct Piston : DrainedPiston {
   pfv::Flow flow(pfv::StrainMeasure measure) const {
     pfv::Options options;
     options.strain_measure = measure;
