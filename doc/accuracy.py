@@ -292,6 +292,11 @@ def estimate_table(solved):
                   "not covered"], rows)
 
 
+def save(figure, path):
+    figure.savefig(path, dpi=100, metadata={"Software": None})  # without the version of matplotlib
+    plt.close(figure)
+
+
 def plot_permeability(solved, path):
     groups = list(dict.fromkeys((c.group, c.wall) for c in solved))
     figure, axes = plt.subplots(figsize=(9, 5), constrained_layout=True)
@@ -311,8 +316,7 @@ def plot_permeability(solved, path):
     axes.set_ylim(.1, 12)
     axes.set_ylabel("permeability / Stokes flow")
     axes.legend(fontsize=8)
-    figure.savefig(path, dpi=100, metadata={"Software": None})
-    plt.close(figure)
+    save(figure, path)
 
 
 def plot_estimate(solved, path):
@@ -332,8 +336,7 @@ def plot_estimate(solved, path):
     axes.set_xlabel("actual |ln(K / K of Stokes flow)|")
     axes.set_ylabel("predicted")
     axes.legend(fontsize=7)
-    figure.savefig(path, dpi=100, metadata={"Software": None})
-    plt.close(figure)
+    save(figure, path)
 
 
 def plot_forces(solved, path):
@@ -351,8 +354,7 @@ def plot_forces(solved, path):
                     rotation=60, ha="right", fontsize=7)
     axes.set_ylabel("error of the force on a sphere, %")
     axes.legend(fontsize=7)
-    figure.savefig(path, dpi=100, metadata={"Software": None})
-    plt.close(figure)
+    save(figure, path)
 
 
 def main():

@@ -15,24 +15,22 @@ namespace {
 
 using namespace support;
 
-TEST(ConjugateGradient, NamesTheRowThatIsNotPositive) {
+void expect_refusal_of_row_4(SolverKind kind, double diagonal) {
   Rows rows = line(6);
-  rows[4][4] = 0.1;
+  rows[4][4] = diagonal;
   const SymmetricMatrix matrix = compressed(rows);
-  const auto solver = make_solver(SolverKind::cg, OrderingKind::automatic);
+  const auto solver = make_solver(kind, OrderingKind::automatic);
   solver->order(matrix);
   const std::string message = message_of<SolverError>([&] { solver->factor(matrix); });
   EXPECT_TRUE(contains(message, "not positive definite at row 4")) << message;
 }
 
+TEST(ConjugateGradient, NamesTheRowThatIsNotPositive) {
+  expect_refusal_of_row_4(SolverKind::cg, 0.1);
+}
+
 TEST(GaussSeidel, NamesTheRowThatIsNotPositive) {
-  Rows rows = line(6);
-  rows[4][4] = 0.0;
-  const SymmetricMatrix matrix = compressed(rows);
-  const auto solver = make_solver(SolverKind::gauss_seidel, OrderingKind::automatic);
-  solver->order(matrix);
-  const std::string message = message_of<SolverError>([&] { solver->factor(matrix); });
-  EXPECT_TRUE(contains(message, "not positive definite at row 4")) << message;
+  expect_refusal_of_row_4(SolverKind::gauss_seidel, 0.0);
 }
 
 class IterativeSolver : public testing::TestWithParam<SolverKind> {};
