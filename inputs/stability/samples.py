@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The grains of the study, and LIGGGHTS runs with them. SAMPLES are made once a command."""
+import functools
+import math
+import os
+import random
+import re
+import subprocess
+from pathlib import Path
+
+SCENE = Path(__file__).resolve().parent
+BIN = Path(os.environ.get("PFV_BIN", SCENE.parents[1] / "build" / "bin"))
+EDGE, DENSITY = 0.1, 2600.0  # m, kg/m3
+SAMPLES = {"dense": 1.35, "loose": 1.0}  # factor on the radii of a jittered grid
+
+
+def grid(factor, rng, cells=5):
+    step = EDGE / cells
+    return [[(n + 0.5 + rng.uniform(-0.08, 0.08)) * step for n in (i, j, k)] +
+            [factor * step * rng.uniform(0.36, 0.41)]
+            for i in range(cells) for j in range(cells) for k in range(cells)]
+
+
+def write_data(path, grains, speed, rng):
+    lines = ["grains of the stability study", "", f"{len(grains)} atoms", "1 atom types", ""]
+    lines += [f"-0.02 {EDGE + 0.02} {a}lo {a}hi" for a in "xyz"] + ["", "Atoms", ""]
+    lines += [f"{n} 1 {2 * r!r} {DENSITY} {x!r} {y!r} {z!r}"
+              for n, (x, y, z, r) in enumerate(grains, 1)]
+    lines += ["", "Velocities", ""]
+    lines += [f"{n} " + " ".join(repr(speed * rng.uniform(-1, 1)) for _ in range(3)) + " 0 0 0"
+              for n in range(1, len(grains) + 1)]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def liggghts(script, **variables):
+    """(whether the run reached its end, screen output)"""
+    words = [str(BIN / "liggghts-pfv"), "-in", script, "-log", "none"]
+    for name, value in variables.items():
+        words += ["-var", name, str(value)]
+    done = subprocess.run(words, cwd=SCENE, capture_output=True, encoding="utf-8", errors="replace",
+                          env={**os.environ, "OMP_NUM_THREADS": "1"})
+    return done.returncode == 0, done.stdout
+
+
+def must(ok_and_screen):
+    ok, screen = ok_and_screen
+    if not ok:
+        raise SystemExit("stability: " + next(
+            (line for line in screen.splitlines() if "ERROR" in line), "liggghts-pfv failed"))
+    return screen
+
+
+@functools.cache
+def sample(name):
+    """Data file of the settled grains, relative to the scene."""
+    rng = random.Random(1)
+    data = SCENE / "post" / f"{name}.data"
+    write_data(data, grid(SAMPLES[name], rng), 0.0, rng)
+    must(liggghts("in.settle", data=data, out=f"post/{name}.rest"))
+    rows = (SCENE / "post" / f"{name}.rest").read_text().splitlines()[9:]
+    # so slow that no grain moves by a part of its contact overlaps during a run
+    write_data(data, [[float(word) for word in row.split()[1:]] for row in rows], 1e-9, rng)
+    return f"post/{name}.data"
+
+
+def rows_of(screen):
+    rows = []
+    for line in screen.splitlines():
+        words = line.split()
+        if len(words) == 4 and re.fullmatch(r"\d+", words[0]):
+            rows.append([float(word) for word in words])
+    return rows
+
+
+def growth(data, viscosity, step, steps, words):
+    """Kinetic energy at the end of a run over that at its beginning; infinite where it broke off."""
+    ok, screen = liggghts("in.stability", data=data, viscosity=viscosity, dt=repr(step),
+                          steps=steps, words=words)
+    rows = rows_of(screen)
+    if not rows or rows[0][0] != 0:
+        must((False, screen))
+    energies = [row[1] for row in rows]
+    broken = not ok or not all(math.isfinite(energy) for energy in energies)
+    return math.inf if broken else energies[-1] / energies[0]
+
+
+def printed(data, viscosity):
+    """(limit, papers' estimate) that the fix prints at setup, s."""
+    screen = must(liggghts("in.stability", data=data, viscosity=viscosity, dt=1e-12, steps=0))
+    found = re.search(r"explicit coupling (\S+) s \(papers' .*?: (\S+) s\)", screen)
+    limit = next(row[2] for row in rows_of(screen))
+    return limit, float(found.group(2))
