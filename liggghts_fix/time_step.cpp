@@ -3,6 +3,7 @@
 #include "fix_pfv.h"
 
 #include "pfv/error.hpp"
+#include "pfv/time_step.hpp"
 
 #include "error.h"
 #include "update.h"
@@ -140,7 +141,8 @@ double FixPfv::estimated_limit() const {
   const auto radii = grains_.packing().radii;
   double smallest = std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k < masses.size(); ++k)
-    smallest = std::min(smallest, masses[k] / (400.0 * settings_.fluid.viscosity * radii[k]));
+    smallest = std::min(
+        smallest, pfv::estimated_time_step(masses[k], radii[k], settings_.fluid.viscosity));
   return smallest;
 }
 

@@ -5,6 +5,7 @@
 #include "selftest_command.hpp"
 #include "solve_arguments.hpp"
 #include "solve_command.hpp"
+#include "time_step_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -50,6 +51,15 @@ int run(int argc, char** argv) {
   bench->footer(
       "Example: what a run of 20000 grains and a million steps costs here\n"
       "  pfv bench --spheres 1000,5000 --predict 20000 --steps 1e6 --steps-per-network 5000");
+  pfv::app::TimeStepArguments time_step_arguments;
+  CLI::App* time_step = app.add_subcommand(
+      "time-step", "which time step an explicit coupling bears, and the papers' estimates of it");
+  time_step->set_version_flag("--version", version_line);
+  pfv::app::add_time_step_options(*time_step, time_step_arguments);
+  time_step->footer(
+      "Example: grains of quartz under a lid of 0.2 kg\n"
+      "  pfv time-step --packing grains.csv --box 0 1 0 1 0 1 --face zlo:pressure=0\n"
+      "                --grain-density 2600 --piston zhi:0.2 --contact-stiffness 1e4");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // help or version
@@ -62,6 +72,10 @@ int run(int argc, char** argv) {
   if (selftest->parsed()) return pfv::app::selftest(std::cout) ? succeeded : failed;
   if (bench->parsed()) {
     pfv::app::bench(bench_arguments, std::cout);
+    return succeeded;
+  }
+  if (time_step->parsed()) {
+    pfv::app::time_step(time_step_arguments, std::cout);
     return succeeded;
   }
   pfv::app::solve(pfv::app::request_of(arguments), std::cout, std::cerr);

@@ -16,11 +16,67 @@ namespace {
 
 namespace fs = std::filesystem;
 
+CLI::Option* repeatable(CLI::Option* option) {
+  return option->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+}  // namespace
+
 double positive(const std::string& option, const std::string& text) {
   const double value = number(option, text);
   if (value <= 0) throw InputError(option + ": " + text + " is not > 0: give a positive number");
   return value;
 }
+
+int whole_number(const std::string& option, const std::string& text) {
+  const auto number = detail::integer(text);
+  if (!number || *number < 1 || *number > std::numeric_limits<int>::max())
+    throw InputError(option + ": " + detail::quoted(text) + " is no whole number >= 1");
+  return static_cast<int>(*number);
+}
+
+void add_flow_options(CLI::App& command, SolveArguments& arguments) {
+  const std::string group = "Flow problem (SI units; a face not named is sealed)";
+  command.add_option("--packing", arguments.packing,
+                     "spheres (m, m/s): CSV with header id,x,y,z,radius[,vx,vy,vz],\n"
+                     "or a LIGGGHTS dump, of which the last snapshot is taken")
+      ->required()->option_text("FILE (required)")->group(group);
+  command.add_option("--box", arguments.box, "flow box, m")
+      ->type_size(6)->expected(1)->required()
+      ->option_text("XLO XHI YLO YHI ZLO ZHI (required)")->group(group);
+  repeatable(command.add_option("--face", arguments.faces,
+                     "condition on a face, may be given several times\n"
+                                "NAME  xlo | xhi | ylo | yhi | zlo | zhi\n"
+                                "ITEM  pressure=P (Pa) | flux=Q (m3/s, positive into the box) |\n"
+                                "      sealed | wall=no_slip|symmetry |\n"
+                                "      velocity=V (m/s, positive along +axis)\n"
+                                "(default: sealed, at rest)"))
+      ->option_text("NAME:ITEM[,ITEM]...")->group(group);
+  repeatable(command.add_option("--patch", arguments.patches,
+                     "rectangle on a face, may be given several times: its extent (m)\n"
+                                "along the two other axes in the order x y z, and one of\n"
+                                "pressure=P (Pa) | flux=Q (m3/s) | sealed (default: none)"))
+      ->option_text("NAME:A0,A1,B0,B1:ITEM")->group(group);
+  repeatable(command.add_option("--region", arguments.regions,
+                     "pores inside the packing, for instance a well, may be given several\n"
+                                "times: extent (m) and pressure=P (Pa) | flux=Q (m3/s, positive\n"
+                                "into the pores) (default: none)"))
+      ->option_text("X0,X1,Y0,Y1,Z0,Z1:ITEM")->group(group);
+  repeatable(command.add_option("--point", arguments.points,
+                     "the pore at a place, as --region (default: none)"))
+      ->option_text("X,Y,Z:ITEM")->group(group);
+  command.add_option("--periodic", arguments.periodic,
+                     "axes along which the packing repeats (default: none)")
+      ->delimiter(',')->allow_extra_args(false)->option_text("x,y,z")->group(group);
+  command.add_option("--gradient", arguments.gradient,
+                     "macroscopic pressure gradient along periodic axes, Pa/m (default 0 0 0)")
+      ->type_size(3)->expected(1)->option_text("GX GY GZ")->group(group);
+  command.add_option("--wall", arguments.wall,
+                     "wall type of every face without wall= of its own (default no_slip)")
+      ->option_text("no_slip|symmetry")->group(group);
+}
+
+namespace {
 
 double not_negative(const std::string& option, const std::string& text) {
   const double value = number(option, text);
@@ -98,13 +154,6 @@ Options options_of(const SolveArguments& arguments) {
   return options;
 }
 
-int whole_number(const std::string& option, const std::string& text) {
-  const auto number = detail::integer(text);
-  if (!number || *number < 1 || *number > std::numeric_limits<int>::max())
-    throw InputError(option + ": " + detail::quoted(text) + " is no whole number >= 1");
-  return static_cast<int>(*number);
-}
-
 /// The grid of --model darcy_grid, or nothing for the pore network.
 std::optional<DarcyOptions> grid_of(const SolveArguments& arguments) {
   if (arguments.model == "pfv") {
@@ -153,51 +202,6 @@ void check_outputs(const SolveRequest& request) {
   }
 }
 
-CLI::Option* repeatable(CLI::Option* option) {
-  return option->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
-void add_flow_options(CLI::App& command, SolveArguments& arguments) {
-  const std::string group = "Flow problem (SI units; a face not named is sealed)";
-  command.add_option("--packing", arguments.packing,
-                     "spheres (m, m/s): CSV with header id,x,y,z,radius[,vx,vy,vz],\n"
-                     "or a LIGGGHTS dump, of which the last snapshot is taken")
-      ->required()->option_text("FILE (required)")->group(group);
-  command.add_option("--box", arguments.box, "flow box, m")
-      ->type_size(6)->expected(1)->required()
-      ->option_text("XLO XHI YLO YHI ZLO ZHI (required)")->group(group);
-  repeatable(command.add_option("--face", arguments.faces,
-                     "condition on a face, may be given several times\n"
-                                "NAME  xlo | xhi | ylo | yhi | zlo | zhi\n"
-                                "ITEM  pressure=P (Pa) | flux=Q (m3/s, positive into the box) |\n"
-                                "      sealed | wall=no_slip|symmetry |\n"
-                                "      velocity=V (m/s, positive along +axis)\n"
-                                "(default: sealed, at rest)"))
-      ->option_text("NAME:ITEM[,ITEM]...")->group(group);
-  repeatable(command.add_option("--patch", arguments.patches,
-                     "rectangle on a face, may be given several times: its extent (m)\n"
-                                "along the two other axes in the order x y z, and one of\n"
-                                "pressure=P (Pa) | flux=Q (m3/s) | sealed (default: none)"))
-      ->option_text("NAME:A0,A1,B0,B1:ITEM")->group(group);
-  repeatable(command.add_option("--region", arguments.regions,
-                     "pores inside the packing, for instance a well, may be given several\n"
-                                "times: extent (m) and pressure=P (Pa) | flux=Q (m3/s, positive\n"
-                                "into the pores) (default: none)"))
-      ->option_text("X0,X1,Y0,Y1,Z0,Z1:ITEM")->group(group);
-  repeatable(command.add_option("--point", arguments.points,
-                     "the pore at a place, as --region (default: none)"))
-      ->option_text("X,Y,Z:ITEM")->group(group);
-  command.add_option("--periodic", arguments.periodic,
-                     "axes along which the packing repeats (default: none)")
-      ->delimiter(',')->allow_extra_args(false)->option_text("x,y,z")->group(group);
-  command.add_option("--gradient", arguments.gradient,
-                     "macroscopic pressure gradient along periodic axes, Pa/m (default 0 0 0)")
-      ->type_size(3)->expected(1)->option_text("GX GY GZ")->group(group);
-  command.add_option("--wall", arguments.wall,
-                     "wall type of every face without wall= of its own (default no_slip)")
-      ->option_text("no_slip|symmetry")->group(group);
-}
-
 void add_fluid_options(CLI::App& command, SolveArguments& arguments) {
   const std::string group = "Fluid";
   command.add_option("--viscosity", arguments.viscosity, "dynamic viscosity, Pa s (default 1e-3)")
@@ -219,10 +223,6 @@ void add_fluid_options(CLI::App& command, SolveArguments& arguments) {
 void add_method_options(CLI::App& command, SolveArguments& arguments) {
   const std::string group = "Method";
   const Options defaults;
-  arguments.partition = name_of(defaults.partition);
-  arguments.solver = name_of(defaults.solver);
-  arguments.ordering = name_of(defaults.ordering);
-  arguments.precision = name_of(defaults.precision);
   command.add_option("--model", arguments.model,
                      "pores between the grains, or Darcy flow on a coarse grid (default pfv)")
       ->option_text("pfv|darcy_grid")->group(group);

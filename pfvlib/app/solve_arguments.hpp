@@ -20,8 +20,9 @@ struct SolveArguments {
   std::vector<std::string> box, faces, patches, regions, points, gravity, periodic, gradient;
   std::string model = "pfv", drag;
   std::vector<std::string> cells;
-  std::string wall = "no_slip", viscosity = "1e-3", density = "1000", partition, solver, ordering,
-      precision, threads = "1";
+  std::string wall = "no_slip", viscosity = "1e-3", density = "1000", threads = "1";
+  std::string partition = name_of(Options{}.partition), solver = name_of(Options{}.solver),
+              ordering = name_of(Options{}.ordering), precision = name_of(Options{}.precision);
   std::optional<std::string> conductance, tolerance, bulk_modulus, time_step, repeat;
   std::optional<std::string> forces, report, vtk, culprits;
 };
@@ -38,6 +39,12 @@ struct SolveRequest {
   std::optional<std::string> forces, report, vtk, culprits;  ///< output files
 };
 
+/// The whole of `text` as a number > 0, or as a whole number >= 1; throw InputError that names `option`.
+double positive(const std::string& option, const std::string& text);
+int whole_number(const std::string& option, const std::string& text);
+
+/// Packing, box and what lies around: for every command that solves a flow.
+void add_flow_options(CLI::App& command, SolveArguments& arguments);
 void add_solve_options(CLI::App& command, SolveArguments& arguments);
 
 /// Throws InputError for whatever can be refused before the packing is read, output folders that

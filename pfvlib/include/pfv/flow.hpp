@@ -88,6 +88,11 @@ class Flow final : public FlowModel {
   /// was asked before.
   double time_step_limit(const Eigen::VectorXd& masses,
                          const std::array<Piston, 6>& pistons = {}) override;
+  /// V^k of these spheres (columns of the packing): the fluid answers the velocity v of sphere k alone,
+  /// all others, faces and imposed pressures held, with the force -V^k v on it, N s/m (thesis
+  /// eqs. 4.10-4.16); 0 for hidden and left-out spheres. Cost: three solves a sphere, on the kept factor.
+  /// Throws InputError for a column that the packing does not have.
+  std::vector<Eigen::Matrix3d> viscosity_matrices(const std::vector<int>& columns) const;
   std::int64_t retriangulations() const override;
   /// Spheres whose power cell is empty.
   std::vector<int> hidden() const override;

@@ -13,4 +13,5 @@
 #include "pfv/options.hpp"
 #include "pfv/packing.hpp"
 #include "pfv/report.hpp"
+#include "pfv/time_step.hpp"
 #include "pfv/version.hpp"

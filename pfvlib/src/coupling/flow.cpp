@@ -208,6 +208,11 @@ double Flow::time_step_limit(const Eigen::VectorXd& masses,
   return data_->time_step_limit(masses, pistons);
 }
 
+std::vector<Eigen::Matrix3d> Flow::viscosity_matrices(const std::vector<int>& columns) const {
+  data_->require_result();
+  return data_->viscosity_matrices(columns);
+}
+
 std::int64_t Flow::retriangulations() const { return data_->retriangulations; }
 
 std::vector<int> Flow::hidden() const {

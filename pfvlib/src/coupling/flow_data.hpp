@@ -71,6 +71,7 @@ struct FlowData {
                         Coupling coupling = Coupling::explicit_step,
                         const GrainDynamics* grains = nullptr);
   double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
+  std::vector<Eigen::Matrix3d> viscosity_matrices(const std::vector<int>& columns);
   /// The matrix of the last solve.
   const SymmetricMatrix& solved_matrix() const {
     return force_lag.size() > 0 ? built->implicit->system.matrix : built->system.matrix;
