@@ -18,7 +18,6 @@ struct Task {
   Box box;
   Fluid fluid;
   Options options;
-  std::shared_ptr<Team> team;
   double step;
   bool moving;
 
@@ -27,7 +26,8 @@ struct Task {
     BackgroundRebuild::Result result;
     {
       const PhaseClock total(result.seconds.total);
-      const BuildSettings settings{box, fluid, options, team};
+      const auto alone = std::make_shared<Team>();  // the other threads are those of the steps
+      const BuildSettings settings{box, fluid, options, alone};
       const BuildCost cost{result.counts, result.seconds};
       result.network = derive_network(grains.view(), settings, cost);
       factor_pressures(*result.network, settings, step, cost);
@@ -52,7 +52,6 @@ BackgroundRebuild::BackgroundRebuild(const Packing& packing, const BuildSettings
             settings.box,
             settings.fluid,
             settings.options,
-            settings.team,
             step,
             moving};
   try {

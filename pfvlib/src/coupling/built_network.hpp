@@ -46,6 +46,7 @@ struct BuiltNetwork {
   Unknowns unknowns;
   PressureSystem system;
   std::unique_ptr<LinearSolver> solver;
+  std::unique_ptr<LinearSolver> former_solver;  ///< of the network before: its memory serves again
   Eigen::VectorXd storage;  ///< V^f / (K_f dt) of each pore, m³/Pa, or empty
   double storage_dt = 0.0;  ///< time step whose storage term is in the factor
   std::optional<bool> loses_digits;  ///< whether its solves need refinement; unknown before the first

@@ -90,7 +90,11 @@ void FlowData::update_network(const Packing& packing, double step, bool advance)
 void FlowData::rebuild_now(const Packing& packing) {
   next.reset();
   stale = true;
+  std::unique_ptr<LinearSolver> solver = built ? std::move(built->solver) : nullptr;
+  const bool carries_over = old_pressures.size() > 0 || lagged.size() > 0;
+  if (!carries_over) built.reset();  // its memory is the new one's
   auto fresh = derive_network(packing, build_settings(), {counts, seconds});
+  fresh->former_solver = std::move(solver);
   packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
   take_up(std::move(fresh));
   stale = false;
@@ -113,6 +117,7 @@ void FlowData::begin_next(const Packing& packing, double step) {
 void FlowData::take_up_next() {
   const double start = wall_seconds();
   std::unique_ptr<BuiltNetwork> fresh = next->take({counts, seconds});
+  if (fresh->solver) fresh->solver->share_with(team);
   wall_waited += wall_seconds() - start;
   next.reset();
   strain = changes_before_next.size() > 0 ? mean_strain(volume_changes - changes_before_next)
@@ -143,7 +148,8 @@ void FlowData::take_up(std::unique_ptr<BuiltNetwork> fresh) {
   solution.setZero(built->unknowns.count);  // no trace of the old network in what follows
   counts.degenerate_throats = built->conductances.degenerate;
   counts.merged_pores = built->network.cells() - pores;
-  if (old) ++retriangulations;
+  if (had_network) ++retriangulations;
+  had_network = true;
 }
 
 /// Whether the grains or the boundaries are others than those of the network, whatever the strain.

@@ -32,6 +32,7 @@ struct FlowData {
 
   std::unique_ptr<BuiltNetwork> built;
   bool stale = true;
+  bool had_network = false;
   std::optional<BackgroundRebuild> next;  ///< the network that comes after `built`
   int steps_to_next = 0;                  ///< until it is taken up
   double strain_before_next = 0.0;        ///< had accumulated when it was begun

@@ -53,7 +53,9 @@ void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double
       built.storage = storage_volumes(built.throats) / (*settings.fluid.bulk_modulus * step);
     built.system = assemble(built.network, built.conductances.value, built.unknowns, built.storage);
   }
-  if (new_pattern) built.solver = make_solver(settings.options, settings.team);
+  if (new_pattern)
+    built.solver = built.former_solver ? std::move(built.former_solver)
+                                       : make_solver(settings.options, settings.team);
   if (built.unknowns.count > 0) {
     if (new_pattern) {
       const PhaseClock clock(cost.seconds.order);

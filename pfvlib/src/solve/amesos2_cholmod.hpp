@@ -37,13 +37,14 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   static constexpr const char* name = "CholmodSupernodal";
 
   /// `permutation`: see CholmodFactor::analyze.
-  /// `single`: see SupernodalSolve.
-  CholmodSupernodal(Teuchos::RCP<const Matrix> matrix, std::vector<int> permutation, bool single,
-                    std::shared_ptr<Team> team)
+  CholmodSupernodal(Teuchos::RCP<const Matrix> matrix, std::vector<int> permutation,
+                    std::shared_ptr<CholmodFactor> factor, std::shared_ptr<Team> team)
       : Base(matrix, Teuchos::null, Teuchos::null),
         permutation_(std::move(permutation)),
         team_(std::move(team)),
-        factor_(single) {}
+        factor_(std::move(factor)) {}
+
+  void share_with(std::shared_ptr<Team> team) { team_ = std::move(team); }
 
  private:
   using Vectors = Amesos2::MultiVecAdapter<Vector>;
@@ -55,7 +56,7 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   int symbolicFactorization_impl() {
     const SymmetricRows matrix = rows();
     const OutsideTrilinos working;
-    factor_.analyze(matrix, permutation_);
+    factor_->analyze(matrix, permutation_);
     return 0;
   }
 
@@ -63,9 +64,9 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
     const SymmetricRows matrix = rows();
     {
       const OutsideTrilinos working;
-      factor_.factorize(matrix);
+      factor_->factorize(matrix, *team_);
     }
-    this->setNnzLU(2 * factor_.entries());
+    this->setNnzLU(2 * factor_->entries());
     return 0;
   }
 
@@ -73,7 +74,7 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
     const double* from = Pointer::get_pointer_to_vector(b);
     double* to = Pointer::get_pointer_to_vector(x);
     const OutsideTrilinos working;
-    factor_.solve(from, to, *team_);
+    factor_->solve(from, to, *team_);
     return 0;
   }
 
@@ -108,7 +109,7 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   Kokkos::View<int*, HostSpace> row_begin_;
   Kokkos::View<int*, HostSpace> column_;
   Kokkos::View<double*, HostSpace> value_;
-  mutable CholmodFactor factor_;
+  std::shared_ptr<CholmodFactor> factor_;
 };
 
 }  // namespace pfv

@@ -128,12 +128,19 @@ class Amesos2Solver final : public CheckedSolver {
       : CheckedSolver(solver),
         ordering_(ordering),
         is_mixed_(precision == Precision::mixed),
-        team_(std::move(team)) {}
+        team_(std::move(team)),
+        factor_(std::make_shared<CholmodFactor>(is_mixed_)) {}
   ~Amesos2Solver() override {
     const Turn turn(trilinos_mutex);
     amesos2_ = {};
     solution_ = right_side_ = {};
     matrix_ = {};
+  }
+  void share_with(std::shared_ptr<Team> team) override {
+    team_ = std::move(team);
+    const Turn turn(trilinos_mutex);
+    if (kind() == SolverKind::cholmod && !amesos2_.is_null())
+      Teuchos::rcp_dynamic_cast<CholmodSupernodal<Matrix, Vector>>(amesos2_)->share_with(team_);
   }
   Amesos2Solver(const Amesos2Solver&) = delete;
   Amesos2Solver& operator=(const Amesos2Solver&) = delete;
@@ -147,6 +154,7 @@ class Amesos2Solver final : public CheckedSolver {
     if (kind() == SolverKind::cholmod)
       permutation = fill_reducing_ordering(ordering_, matrix, coordinates);
     const Turn turn(trilinos_mutex);
+    amesos2_ = {};
     matrix_ = tpetra_pattern(matrix, communicator_for(kind()));
     right_side_ = Teuchos::rcp(new Vector(matrix_->getRangeMap(), 1));
     solution_ = Teuchos::rcp(new Vector(matrix_->getDomainMap(), 1));
@@ -154,7 +162,7 @@ class Amesos2Solver final : public CheckedSolver {
       amesos2_ = Amesos2::create<Matrix, Vector>("KLU2", matrix_);
     } else if (kind() == SolverKind::cholmod) {
       amesos2_ = Teuchos::rcp(new CholmodSupernodal<Matrix, Vector>(
-          matrix_, std::move(permutation), is_mixed_, team_));
+          matrix_, std::move(permutation), factor_, team_));
       if (is_mixed_) row_begin_ = matrix.row_begin;
     } else {
       return;
@@ -249,6 +257,7 @@ class Amesos2Solver final : public CheckedSolver {
   OrderingKind ordering_;
   bool is_mixed_;
   std::shared_ptr<Team> team_;
+  std::shared_ptr<CholmodFactor> factor_;  // of cholmod; its memory serves one matrix after the other
   std::vector<int> row_begin_;  // of mixed precision, as is what follows
   Eigen::VectorXd residual_, correction_;
   Teuchos::RCP<Matrix> matrix_;

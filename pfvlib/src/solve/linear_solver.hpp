@@ -40,10 +40,12 @@ class LinearSolver {
   /// x = A^-1 b. An x of length n is where mixed precision sets out from; zeros are a good beginning.
   virtual void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;
   virtual std::string name() const = 0;
+  /// The team that shares the work from now on. No byte depends on it.
+  virtual void share_with(std::shared_ptr<Team> team) { (void)team; }
 };
 
 /// The solver that the options name (automatic choices are resolved), with its ordering, precision and
-/// tolerance. Throws InputError for a combination that makes no sense. `team` shares the solves of
+/// tolerance. Throws InputError for a combination that makes no sense. `team` shares the work of
 /// cholmod; null: the caller's thread does them.
 std::unique_ptr<LinearSolver> make_solver(const Options& options,
                                           std::shared_ptr<Team> team = nullptr);

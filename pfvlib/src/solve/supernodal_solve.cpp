@@ -107,140 +107,100 @@ void round_in_place(double* values, std::size_t count) {
   }
 }
 
-/// The supernodes below each one, ascending; those without one above it stand in the last entry.
-/// `first`: where the subtree of each begins. The parent of a supernode holds the first of its rows
-/// below the diagonal block.
-std::vector<std::vector<int>> subtree_children(const cholmod_factor& factor,
-                                               std::vector<int>& first) {
-  const int count = static_cast<int>(factor.nsuper);
-  const auto* first_column = static_cast<const int*>(factor.super);
-  const auto* rows_begin = static_cast<const int*>(factor.pi);
-  const auto* rows = static_cast<const int*>(factor.s);
-  std::vector<std::vector<int>> children(count + 1);
-  first.resize(count);
-  for (int s = 0; s < count; ++s) {
-    const int below = rows_begin[s] + first_column[s + 1] - first_column[s];
-    const int parent =
-        below == rows_begin[s + 1]
-            ? count
-            : static_cast<int>(std::upper_bound(first_column, first_column + count, rows[below]) -
-                               first_column) - 1;
-    first[s] = children[s].empty() ? s : first[children[s].front()];
-    children[parent].push_back(s);
+/// Visits the pieces, of at most `panel_width` columns, that a block is cut into: how many columns are
+/// before each, and its own.
+template <class Visit>
+void for_each_piece(const FactorBlock& block, const Visit& visit) {
+  const int pieces = (block.columns + panel_width - 1) / panel_width;
+  for (int piece = 0, done = 0; piece < pieces; ++piece) {
+    const int width = (block.columns - done) / (pieces - piece);
+    visit(done, width);
+    done += width;
   }
-  return children;
 }
 
-/// Replaces the largest subtree by those below its root until none has more than this part of all
-/// the work: two threads are then evenly busy, and what lies above stays small.
-constexpr double largest_subtree = 0.26;
-/// A factor of fewer entries is one subtree: handing work over would cost more than it saves.
-constexpr std::size_t worth_cutting = 200000;
+Panel panel_of(const FactorBlock& block, int done, int width) {
+  return {block.first_column + done, width, block.height - done - width,
+          block.first_row + done + width, 0};
+}
 
-/// `roots`: of all trees on entry, of the chosen subtrees on return, the largest first.
-template <class Work>
-void choose_subtrees(std::vector<int>& roots, const std::vector<std::vector<int>>& children,
-                     const Work& work, std::size_t entries) {
-  const auto smaller = [&](int a, int b) {
-    return work(a) != work(b) ? work(a) < work(b) : a > b;
-  };
-  if (entries < worth_cutting) return;
-  for (;;) {
-    const auto largest = std::max_element(roots.begin(), roots.end(), smaller);
-    const int root = *largest;
-    if (static_cast<double>(work(root)) <= largest_subtree * static_cast<double>(entries) ||
-        children[root].empty())
-      break;
-    roots.erase(largest);
-    roots.insert(roots.end(), children[root].begin(), children[root].end());
-  }
-  std::sort(roots.begin(), roots.end(), [&](int a, int b) { return smaller(b, a); });
+std::int64_t entries_of(const Panel& panel) {
+  return static_cast<std::int64_t>(panel.columns) * (panel.columns + 1) / 2 +
+         static_cast<std::int64_t>(panel.columns) * panel.rows;
 }
 
 }  // namespace
 
-// L is stored by supernodes: columns super[s] ... super[s + 1] share the pi[s + 1] - pi[s] rows of
-// a dense block that starts at px[s], diagonal first.
-void SupernodalSolve::analyze(const cholmod_factor& factor) {
-  const auto* first_column = static_cast<const int*>(factor.super);
-  const auto* rows_begin = static_cast<const int*>(factor.pi);
-  rows_ = static_cast<const int*>(factor.s);
-  permutation_ = static_cast<const int*>(factor.Perm);
+void SupernodalSolve::analyze(const Supernodes& supernodes, const SubtreeCut& cut,
+                              const std::vector<FactorBlock>& blocks, const int* permutation) {
+  permutation_ = permutation;
   values_ = nullptr;
-  panels_.clear();
-  std::vector<int> supernode_panels{0};
-  std::int64_t value = 0;
-  for (std::size_t s = 0; s < factor.nsuper; ++s) {
-    const int height = rows_begin[s + 1] - rows_begin[s];
-    const int columns = first_column[s + 1] - first_column[s];
-    const int pieces = (columns + panel_width - 1) / panel_width;
-    for (int piece = 0, done = 0; piece < pieces; ++piece) {
-      const int width = (columns - done) / (pieces - piece);
-      const int rows = height - done - width;
-      panels_.push_back({first_column[s] + done, width, rows, rows_begin[s] + done + width, value});
-      value += static_cast<std::int64_t>(width) * (width + 1) / 2 +
-               static_cast<std::int64_t>(width) * rows;
-      done += width;
+  entries_ = 0;
+  top_columns_.clear();
+  std::vector<int> part_of(supernodes.count, -1), number_above(supernodes.columns, -1);
+  for (const int s : cut.above)
+    for (int c = supernodes.first_column[s]; c < supernodes.first_column[s + 1]; ++c) {
+      number_above[c] = static_cast<int>(top_columns_.size());
+      top_columns_.push_back(c);
     }
-    supernode_panels.push_back(static_cast<int>(panels_.size()));
+  const auto above = static_cast<int>(top_columns_.size());
+  const auto take_rows = [&](Part& part, std::vector<std::int64_t>& begin, int s) {
+    begin[s] = static_cast<std::int64_t>(part.rows.size());
+    for (int i = supernodes.rows_begin[s]; i < supernodes.rows_begin[s + 1]; ++i) {
+      const int row = supernodes.rows[i];
+      part.rows.push_back(number_above[row] < 0 ? row - part.first_column
+                                                : part.columns + number_above[row]);
+    }
+  };
+  std::vector<std::int64_t> begin(supernodes.count);
+  subtrees_.assign(cut.subtrees.size(), {});
+  for (std::size_t k = 0; k < subtrees_.size(); ++k) {
+    const auto [first, end] = cut.subtrees[k];
+    Part& part = subtrees_[k];
+    part.first_column = supernodes.first_column[first];
+    part.columns = supernodes.first_column[end] - part.first_column;
+    part.y.assign(part.columns + above, 0.0);
+    part.rows.reserve(supernodes.rows_begin[end] - supernodes.rows_begin[first]);
+    for (int s = first; s < end; ++s) {
+      take_rows(part, begin, s);
+      part_of[s] = static_cast<int>(k);
+    }
+  }
+  top_ = {};
+  top_.y.assign(above, 0.0);
+  for (const int s : cut.above) take_rows(top_, begin, s);
+  std::int64_t value = 0;
+  int s = 0;
+  for (const FactorBlock& block : blocks) {
+    while (supernodes.first_column[s + 1] <= block.first_column) ++s;
+    Part& part = part_of[s] < 0 ? top_ : subtrees_[part_of[s]];
+    for_each_piece(block, [&](int done, int width) {
+      Panel panel = panel_of(block, done, width);
+      panel.first_column = part_of[s] < 0 ? number_above[panel.first_column]
+                                          : panel.first_column - part.first_column;
+      panel.first_row += begin[s] - supernodes.rows_begin[s];
+      panel.first_value = value;
+      value += entries_of(panel);
+      part.panels.push_back(panel);
+    });
   }
   entries_ = static_cast<std::size_t>(value);
-  cut(factor, panels_, supernode_panels);
-}
-
-// Supernodes are postordered: those of a subtree follow one another, its root last.
-void SupernodalSolve::cut(const cholmod_factor& factor, const std::vector<Panel>& panels,
-                          const std::vector<int>& supernode_panels) {
-  const int count = static_cast<int>(factor.nsuper);
-  const auto* first_column = static_cast<const int*>(factor.super);
-  const auto value_at = [&](int panel) {
-    return panel < static_cast<int>(panels.size()) ? panels[panel].first_value
-                                                   : static_cast<std::int64_t>(entries_);
-  };
-  std::vector<int> first;
-  const std::vector<std::vector<int>> children = subtree_children(factor, first);
-  const auto work = [&](int root) {
-    return value_at(supernode_panels[root + 1]) - value_at(supernode_panels[first[root]]);
-  };
-  std::vector<int> roots = children[count];
-  choose_subtrees(roots, children, work, entries_);
-
-  subtrees_.clear();
-  top_ = Part();
-  const auto add = [&](Part& part, int begin, int end) {
-    part.panels.insert(part.panels.end(), panels.begin() + supernode_panels[begin],
-                       panels.begin() + supernode_panels[end]);
-    part.columns.emplace_back(first_column[begin], first_column[end]);
-  };
-  std::vector<char> is_above(count, 1);
-  for (const int root : roots) {
-    subtrees_.emplace_back();
-    add(subtrees_.back(), first[root], root + 1);
-    std::fill(is_above.begin() + first[root], is_above.begin() + root + 1, 0);
-  }
-  for (int s = 0; s < count; ++s)
-    if (is_above[s]) add(top_, s, s + 1);
-  for (Part& part : subtrees_) part.y.assign(factor.n, 0.0);
-  top_.y.assign(factor.n, 0.0);
 }
 
 // A panel never ends behind the columns that it is packed from, so no column is lost before its
 // turn.
-void SupernodalSolve::pack(cholmod_factor& factor) {
-  const auto* first_column = static_cast<const int*>(factor.super);
-  const auto* rows_begin = static_cast<const int*>(factor.pi);
-  const auto* block_begin = static_cast<const int*>(factor.px);
-  auto* values = static_cast<double*>(factor.x);
-  auto panel = panels_.begin();
-  for (std::size_t s = 0; s < factor.nsuper; ++s) {
-    const std::ptrdiff_t height = rows_begin[s + 1] - rows_begin[s];
-    for (; panel != panels_.end() && panel->first_column < first_column[s + 1]; ++panel) {
-      const std::ptrdiff_t done = panel->first_column - first_column[s];
-      const double* source = values + block_begin[s] + done * height;
-      columns_.assign(source, source + panel->columns * height);
-      pack_panel(*panel, columns_.data() + done, height, values + panel->first_value);
-    }
-  }
+void SupernodalSolve::pack(const std::vector<FactorBlock>& blocks, double* values) {
+  std::int64_t value = 0;
+  for (const FactorBlock& block : blocks)
+    for_each_piece(block, [&](int done, int width) {
+      const Panel panel = panel_of(block, done, width);
+      const double* source =
+          values + block.first_value + static_cast<std::int64_t>(done) * block.height;
+      columns_.assign(source, source + static_cast<std::int64_t>(width) * block.height);
+      pack_panel(panel, columns_.data() + done, block.height, values + value);
+      value += entries_of(panel);
+    });
+  columns_ = {};
   std::fill_n(values + entries_, margin, 0.0);
   values_ = values;
   if (single_) round_in_place(values, entries_ + margin);
@@ -257,30 +217,29 @@ template <class Value>
 void SupernodalSolve::substitute(const Value* values, const double* b, double* x, Team& team) {
   static const auto substitutions = substitutions_of_this_processor<Value>();
   const auto forward = substitutions.first, backward = substitutions.second;
-  const auto each_column = [](const Part& part, const auto& visit) {
-    for (const auto& [begin, end] : part.columns)
-      for (int column = begin; column < end; ++column) visit(column);
-  };
   const auto parts = static_cast<int>(subtrees_.size());
+  const auto above = static_cast<int>(top_columns_.size());
   team.run(parts, [&](int number) {
     Part& part = subtrees_[number];
-    each_column(top_, [&](int column) { part.y[column] = 0.0; });
-    each_column(part, [&](int column) { part.y[column] = b[permutation_[column]]; });
-    forward(part.panels, values, rows_, part.y.data());
+    double* const y = part.y.data();
+    for (int k = 0; k < part.columns; ++k) y[k] = b[permutation_[part.first_column + k]];
+    std::fill_n(y + part.columns, above, 0.0);
+    forward(part.panels, values, part.rows.data(), y);
   });
-  each_column(top_, [&](int column) {
-    double sum = b[permutation_[column]];
-    for (const Part& part : subtrees_) sum += part.y[column];
-    top_.y[column] = sum;
-  });
-  forward(top_.panels, values, rows_, top_.y.data());
-  backward(top_.panels, values, rows_, top_.y.data());
-  each_column(top_, [&](int column) { x[permutation_[column]] = top_.y[column]; });
+  for (int k = 0; k < above; ++k) {
+    double sum = b[permutation_[top_columns_[k]]];
+    for (const Part& part : subtrees_) sum += part.y[part.columns + k];
+    top_.y[k] = sum;
+  }
+  forward(top_.panels, values, top_.rows.data(), top_.y.data());
+  backward(top_.panels, values, top_.rows.data(), top_.y.data());
+  for (int k = 0; k < above; ++k) x[permutation_[top_columns_[k]]] = top_.y[k];
   team.run(parts, [&](int number) {
     Part& part = subtrees_[number];
-    each_column(top_, [&](int column) { part.y[column] = top_.y[column]; });
-    backward(part.panels, values, rows_, part.y.data());
-    each_column(part, [&](int column) { x[permutation_[column]] = part.y[column]; });
+    double* const y = part.y.data();
+    std::copy(top_.y.begin(), top_.y.end(), y + part.columns);
+    backward(part.panels, values, part.rows.data(), y);
+    for (int k = 0; k < part.columns; ++k) x[permutation_[part.first_column + k]] = y[k];
   });
 }
 

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "parallel/team.hpp"
+#include "solve/elimination_tree.hpp"
+#include "solve/supernodal_factor.hpp"
 
-#include <cholmod.h>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -15,10 +16,10 @@ namespace pfv {
 /// other: the reciprocal pivots; the rest of the triangle by columns; the rows below it in blocks
 /// of `block_rows` (the last one may have fewer), each block by columns.
 struct Panel {
-  int first_column;
+  int first_column;          ///< of its part's
   int columns;               ///< at most `panel_width`
   int rows;                  ///< below the triangle
-  std::int64_t first_row;    ///< in the list of row numbers
+  std::int64_t first_row;    ///< in its part's list of row numbers
   std::int64_t first_value;  ///< in the list of values
 };
 
@@ -26,7 +27,7 @@ struct Panel {
 constexpr int panel_width = 8;
 constexpr int block_rows = 4;
 
-/// Forward and backward substitution with the supernodal L of CHOLMOD, packed so that both stream
+/// Forward and backward substitution with a supernodal L, packed so that both stream
 /// through it. CHOLMOD's own solve calls the BLAS for each supernode, too small for that to pay,
 /// and reads the unused upper half of each diagonal block.
 ///
@@ -35,43 +36,44 @@ constexpr int block_rows = 4;
 /// fixed order. The subtrees do not depend on the number of threads, nor does any byte of x.
 class SupernodalSolve {
  public:
-  /// How many values beyond CHOLMOD's the array of L must have room for: a block that is not full
-  /// is read as if it were.
+  /// How many values beyond L its array must have room for: a block that is not full is read as if it
+  /// were.
   static constexpr std::size_t margin = block_rows;
 
   /// `single`: keep L in single precision, x is then good to some 1e-7.
   explicit SupernodalSolve(bool single) : single_(single) {}
 
-  /// Cuts the supernodes of a symbolic factor into panels. It must outlive this.
-  void analyze(const cholmod_factor& factor);
-  /// Packs the values of the analysed factor, which are those of CHOLMOD's layout, where they lie:
-  /// they are L for `solve` alone until the next factorisation.
-  void pack(cholmod_factor& factor);
+  /// Cuts the blocks of a factor into panels. `permutation` must outlive this.
+  void analyze(const Supernodes& supernodes, const SubtreeCut& cut,
+               const std::vector<FactorBlock>& blocks, const int* permutation);
+  /// Packs values that lie by blocks where they are: they are L for `solve` alone until the next
+  /// factorisation.
+  void pack(const std::vector<FactorBlock>& blocks, double* values);
   /// x = P^T L^-T L^-1 P b.
   void solve(const double* b, double* x, Team& team);
   /// Entries of L that a solve reads twice.
   std::size_t entries() const { return entries_; }
 
  private:
-  /// A subtree of the elimination tree, or what lies above all of them.
+  /// A subtree of the elimination tree, or what lies above all of them. It numbers its own columns
+  /// first, then those above it.
   struct Part {
     std::vector<Panel> panels;
-    std::vector<std::pair<int, int>> columns;  ///< begin and end of its ranges
-    std::vector<double> y;                     ///< of all columns
+    std::vector<int> rows;
+    std::vector<double> y;  ///< of its columns
+    int columns = 0;        ///< its own
+    int first_column = 0;   ///< of a subtree
   };
 
-  void cut(const cholmod_factor& factor, const std::vector<Panel>& panels,
-           const std::vector<int>& supernode_panels);
   template <class Value>
   void substitute(const Value* values, const double* b, double* x, Team& team);
 
   bool single_;
   std::vector<Part> subtrees_;
   Part top_;
-  std::vector<Panel> panels_;  ///< all
+  std::vector<int> top_columns_;
   std::size_t entries_ = 0;
   const int* permutation_ = nullptr;
-  const int* rows_ = nullptr;
   const double* values_ = nullptr;  ///< or as many numbers of single precision
   std::vector<double> columns_;     ///< of the panel that is being packed
 };

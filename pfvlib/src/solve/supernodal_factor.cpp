@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/supernodal_factor.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+namespace pfv {
+namespace {
+
+using kernels::strip_width;
+using kernels::tile_rows;
+
+/// As wide as its square and a tile of rows stay in the nearest cache; a multiple of a strip.
+constexpr int block_width = 96;
+/// Multiplications above which rows of a block are worth sharing among threads.
+constexpr double worth_sharing = 3e5;
+/// Pieces of a block's rows for each thread: their work differs.
+constexpr int pieces_per_thread = 4;
+
+constexpr int rounded_up(int number, int step) { return (number + step - 1) / step * step; }
+
+/// Cholesky of a small triangle, column-major, in place.
+int eliminate_triangle(double* triangle, std::ptrdiff_t stride, int columns,
+                       const double* least_pivot, double* inverse_pivot) {
+  for (int j = 0; j < columns; ++j) {
+    double* const column = triangle + j * stride;
+    for (int k = 0; k < j; ++k) {
+      const double* const left = triangle + k * stride;
+      for (int i = j; i < columns; ++i) column[i] -= left[i] * left[j];
+    }
+    if (!(column[j] > least_pivot[j])) return j;
+    column[j] = std::sqrt(column[j]);
+    inverse_pivot[j] = 1.0 / column[j];
+    for (int i = j + 1; i < columns; ++i) column[i] *= inverse_pivot[j];
+  }
+  return SupernodalFactor::none;
+}
+
+}  // namespace
+
+void SupernodalFactor::add_blocks(const Supernodes& supernodes, int s) {
+  const int width = supernodes.width(s), height = supernodes.height(s);
+  for (int done = 0; done < width; done += block_width) {
+    const FactorBlock block{supernodes.first_column[s] + done, std::min(block_width, width - done),
+                            height - done, supernodes.rows_begin[s] + done,
+                            static_cast<std::int64_t>(size_)};
+    std::fill_n(block_of_.begin() + block.first_column, block.columns,
+                static_cast<int>(blocks_.size()));
+    size_ += static_cast<std::size_t>(block.columns) * block.height;
+    tallest_ = std::max(tallest_, block.height);
+    blocks_.push_back(block);
+  }
+}
+
+void SupernodalFactor::analyze(const Supernodes& supernodes, const SubtreeCut& cut,
+                               const int* permutation) {
+  const int n = supernodes.columns;
+  permutation_ = permutation;
+  rows_ = supernodes.rows;
+  inverse_.resize(n);
+  for (int k = 0; k < n; ++k) inverse_[permutation[k]] = k;
+  block_of_.resize(n);
+  blocks_.clear();
+  size_ = 0;
+  tallest_ = 0;
+  std::vector<char> ends_subtree(supernodes.count, 0);
+  for (const auto& [first, end] : cut.subtrees) ends_subtree[end - 1] = 1;
+  std::vector<int> first_block{0};
+  for (int s = 0; s < supernodes.count; ++s) {
+    add_blocks(supernodes, s);
+    if (ends_subtree[s]) size_ += tile_rows;  // what a kernel reads beyond belongs to no other thread
+    first_block.push_back(static_cast<int>(blocks_.size()));
+  }
+  size_ += tile_rows;
+  subtrees_.clear();
+  above_.clear();
+  is_above_.assign(blocks_.size(), 0);
+  for (const auto& [first, end] : cut.subtrees)
+    subtrees_.push_back({first_block[first], first_block[end]});
+  for (const int s : cut.above)
+    for (int block = first_block[s]; block < first_block[s + 1]; ++block) {
+      above_.push_back(block);
+      is_above_[block] = 1;
+    }
+}
+
+/// A's entries in the block; `diagonal`: those on the diagonal.
+void SupernodalFactor::begin_block(const FactorBlock& block, const SymmetricRows& matrix,
+                                   double* diagonal, WorkSpace& work) {
+  double* column = values_ + block.first_value;
+  const int* const rows = rows_of(block);
+  std::fill_n(column, static_cast<std::size_t>(block.columns) * block.height, 0.0);
+  for (int i = 0; i < block.height; ++i) work.place[rows[i]] = i;
+  for (int j = 0; j < block.columns; ++j, column += block.height) {
+    const int row = permutation_[block.first_column + j];
+    diagonal[j] = 0.0;
+    for (int k = matrix.row_begin[row]; k < matrix.row_begin[row + 1]; ++k) {
+      const int i = inverse_[matrix.column[k]];
+      if (i < block.first_column + j) continue;
+      column[work.place[i]] = matrix.value[k];
+      if (i == block.first_column + j) diagonal[j] = matrix.value[k];
+    }
+  }
+}
+
+/// The blocks that the list of `block` holds.
+void SupernodalFactor::take_updates(int block, WorkSpace& work) {
+  work.updating.clear();
+  for (int from = first_update_[block]; from != none; from = next_update_[from])
+    work.updating.push_back(from);
+}
+
+/// to -= from(:, all) from(columns, all)^T in some rows of `to`. `columns` counts rows of `from`.
+void SupernodalFactor::subtract(const FactorBlock& from, Range columns, const FactorBlock& to,
+                                Range target_rows, const std::vector<int>& place,
+                                std::vector<int>& rows) const {
+  const kernels::FactorKernels& k = kernels::factor_kernels();
+  const int* const from_rows = rows_of(from);
+  int begin = columns.begin, end = from.height;
+  const auto above = [&](int row, int target) { return place[row] < target; };
+  if (target_rows.begin > 0)
+    begin = static_cast<int>(std::lower_bound(from_rows + begin, from_rows + end,
+                                              target_rows.begin, above) - from_rows);
+  if (target_rows.end < to.height)
+    end = static_cast<int>(std::lower_bound(from_rows + begin, from_rows + end, target_rows.end,
+                                            above) - from_rows);
+  for (int i = begin; i < end; ++i) rows[i] = place[from_rows[i]];
+  double* column[block_width];
+  const int count = columns.end - columns.begin;
+  for (int j = 0; j < count; ++j)
+    column[j] = values_ + to.first_value +
+                static_cast<std::ptrdiff_t>(from_rows[columns.begin + j] - to.first_column) *
+                    to.height;
+  const double* const values = values_ + from.first_value;
+  const int height = k.lanes * k.update_vectors;
+  for (int i = begin; i < end; i += height) {
+    const int tile = std::min(height, end - i), vectors = (tile + k.lanes - 1) / k.lanes;
+    for (int j = 0; j < count && columns.begin + j < i + tile; j += k.update_columns)
+      k.update[vectors - 1][std::min(k.update_columns, count - j) - 1](
+          {values + i, values + columns.begin + j, from.height, from.columns, tile, &rows[i],
+           column + j});
+  }
+}
+
+/// L of the block's own triangle. Returns the column that has no pivot, or `none`.
+int SupernodalFactor::eliminate_diagonal(const FactorBlock& block, const double* least_pivot,
+                                         double* inverse_pivot) const {
+  const kernels::FactorKernels& k = kernels::factor_kernels();
+  double* const values = values_ + block.first_value;
+  const std::ptrdiff_t stride = block.height;
+  int rows[strip_width];
+  std::iota(rows, rows + strip_width, 0);
+  for (int done = 0; done < block.columns; done += strip_width) {
+    const int width = std::min(strip_width, block.columns - done);
+    double* const triangle = values + done * stride + done;
+    double* column[strip_width];
+    for (int j = 0; j < width; ++j) column[j] = triangle + j * stride;
+    for (int i = 0; done > 0 && i < width; i += k.lanes)
+      for (int j = 0; j < width; j += k.update_columns)
+        k.update[0][std::min(k.update_columns, width - j) - 1](
+            {values + done + i, values + done + j, stride, done, std::min(k.lanes, width - i),
+             rows + i, column + j});
+    const int lost = eliminate_triangle(triangle, stride, width, least_pivot + done,
+                                        inverse_pivot + done);
+    if (lost != none) return done + lost;
+    const int height = k.lanes * k.strip_vectors;
+    for (int i = done + width; i < block.columns; i += height) {
+      const int tile = std::min(height, block.columns - i);
+      k.eliminate[(tile + k.lanes - 1) / k.lanes - 1][width - 1](
+          {values + done * stride + i, values + i, values + done, triangle, inverse_pivot + done,
+           stride, done, tile});
+    }
+  }
+  return none;
+}
+
+void SupernodalFactor::eliminate_rows(const FactorBlock& block, const double* inverse_pivot,
+                                      Range rows) const {
+  const kernels::FactorKernels& k = kernels::factor_kernels();
+  double* const values = values_ + block.first_value;
+  const std::ptrdiff_t stride = block.height;
+  const int height = k.lanes * k.strip_vectors;
+  for (int i = rows.begin; i < rows.end; i += height) {
+    const int tile = std::min(height, rows.end - i);
+    for (int done = 0; done < block.columns; done += strip_width)
+      k.eliminate[(tile + k.lanes - 1) / k.lanes - 1]
+                 [std::min(strip_width, block.columns - done) - 1](
+          {values + done * stride + i, values + i, values + done, values + done * stride + done,
+           inverse_pivot + done, stride, done, tile});
+  }
+}
+
+/// Puts a block on the list of the next one that it changes, where that is above the subtrees or not.
+void SupernodalFactor::link(int block, bool above) {
+  const FactorBlock& b = blocks_[block];
+  if (done_rows_[block] == b.height) return;
+  const int to = block_of_[rows_of(b)[done_rows_[block]]];
+  if (is_above_[to] != static_cast<char>(above)) return;
+  next_update_[block] = first_update_[to];
+  first_update_[to] = block;
+}
+
+int SupernodalFactor::factor_subtree(Range range, const SymmetricRows& matrix, WorkSpace& work) {
+  for (int current = range.begin; current < range.end; ++current) {
+    const FactorBlock& block = blocks_[current];
+    const int last_column = block.first_column + block.columns;
+    double pivot[block_width], inverse_pivot[block_width];
+    begin_block(block, matrix, pivot, work);
+    take_updates(current, work);
+    for (const int from : work.updating) {
+      const FactorBlock& b = blocks_[from];
+      const int* const rows = rows_of(b);
+      Range columns{done_rows_[from], done_rows_[from]};
+      while (columns.end < b.height && rows[columns.end] < last_column) ++columns.end;
+      subtract(b, columns, block, {0, block.height}, work.place, work.rows);
+      done_rows_[from] = columns.end;
+      link(from, false);
+    }
+    for (int j = 0; j < block.columns; ++j) pivot[j] *= lost_pivot_;
+    const int lost = eliminate_diagonal(block, pivot, inverse_pivot);
+    if (lost != none) return block.first_column + lost;
+    eliminate_rows(block, inverse_pivot, {block.columns, block.height});
+    done_rows_[current] = block.columns;
+    link(current, false);
+  }
+  return none;
+}
+
+/// The blocks above the subtrees, one after the other, each shared by rows.
+int SupernodalFactor::factor_above(const SymmetricRows& matrix, std::vector<WorkSpace>& work,
+                                   Team& team) {
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (!is_above_[b]) link(static_cast<int>(b), true);
+  std::vector<Range> columns;
+  for (const int current : above_) {
+    const FactorBlock& block = blocks_[current];
+    const int last_column = block.first_column + block.columns;
+    double pivot[block_width], inverse_pivot[block_width];
+    WorkSpace& shared = work.front();
+    begin_block(block, matrix, pivot, shared);
+    take_updates(current, shared);
+    columns.clear();
+    double products = 0.0;
+    for (const int from : shared.updating) {
+      const FactorBlock& b = blocks_[from];
+      const int* const rows = rows_of(b);
+      int& done = done_rows_[from];
+      const int begin = done;
+      while (done < b.height && rows[done] < last_column) ++done;
+      columns.push_back({begin, done});
+      products += static_cast<double>(b.height - begin) * (done - begin) * b.columns;
+      link(from, true);
+    }
+    const auto in_pieces = [&](int first, double multiplications, const auto& visit) {
+      const int threads = multiplications > worth_sharing ? team.threads() : 1;
+      const int pieces = threads == 1 ? 1 : pieces_per_thread * threads;
+      const int piece = rounded_up((block.height - first) / pieces + 1, tile_rows);
+      std::atomic<int> next{0};
+      team.run(threads, [&](int thread) {
+        for (int k; (k = next.fetch_add(1, std::memory_order_relaxed)) < pieces;) {
+          const Range rows{first + std::min(k * piece, block.height - first),
+                           first + std::min((k + 1) * piece, block.height - first)};
+          if (rows.begin < rows.end) visit(rows, work[thread]);
+        }
+      });
+    };
+    in_pieces(0, products, [&](Range rows, WorkSpace& own) {
+      for (std::size_t k = 0; k < shared.updating.size(); ++k)
+        subtract(blocks_[shared.updating[k]], columns[k], block, rows, shared.place, own.rows);
+    });
+    for (int j = 0; j < block.columns; ++j) pivot[j] *= lost_pivot_;
+    const int lost = eliminate_diagonal(block, pivot, inverse_pivot);
+    if (lost != none) return block.first_column + lost;
+    in_pieces(block.columns, 0.5 * block.height * block.columns * block.columns,
+              [&](Range rows, WorkSpace&) { eliminate_rows(block, inverse_pivot, rows); });
+    done_rows_[current] = block.columns;
+    link(current, true);
+  }
+  return none;
+}
+
+int SupernodalFactor::factorize(const SymmetricRows& matrix, double lost_pivot, double* values,
+                                Team& team) {
+  values_ = values;
+  lost_pivot_ = lost_pivot;
+  first_update_.assign(blocks_.size(), none);
+  next_update_.assign(blocks_.size(), none);
+  done_rows_.assign(blocks_.size(), 0);
+  std::vector<WorkSpace> work(team.threads());
+  for (WorkSpace& own : work) {
+    own.place.resize(block_of_.size());
+    own.rows.resize(tallest_);
+    own.updating.reserve(blocks_.size());
+  }
+  std::vector<int> lost(subtrees_.size(), none);
+  std::atomic<std::size_t> next{0};
+  team.run(team.threads(), [&](int thread) {
+    for (std::size_t k; (k = next.fetch_add(1, std::memory_order_relaxed)) < subtrees_.size();)
+      lost[k] = factor_subtree(subtrees_[k], matrix, work[thread]);
+  });
+  int first = none;
+  for (const int column : lost)
+    if (column != none && (first == none || column < first)) first = column;
+  if (first == none) first = factor_above(matrix, work, team);
+  first_update_ = next_update_ = done_rows_ = {};
+  return first;
+}
+
+}  // namespace pfv
