@@ -72,18 +72,21 @@ FactorKernels table_for() {
   return table;
 }
 
-FactorKernels choose() {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx512f")) return table_for<Avx512>();
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return table_for<Avx2>();
-#endif
-  return table_for<Portable>();
-}
-
 }  // namespace
 
+std::vector<FactorKernels> usable_factor_kernels() {
+  std::vector<FactorKernels> usable;
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx512f")) usable.push_back(table_for<Avx512>());
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    usable.push_back(table_for<Avx2>());
+#endif
+  usable.push_back(table_for<Portable>());
+  return usable;
+}
+
 const FactorKernels& factor_kernels() {
-  static const FactorKernels table = choose();
+  static const FactorKernels table = usable_factor_kernels().front();
   return table;
 }
 

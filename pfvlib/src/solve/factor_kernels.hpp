@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <vector>
 
 namespace pfv::kernels {
 
@@ -126,7 +127,9 @@ struct FactorKernels {
   void (*eliminate[3][strip_width])(const Elimination&);
 };
 
-/// Those of this processor.
+/// Those that this processor has the instructions for, the fastest first.
+std::vector<FactorKernels> usable_factor_kernels();
+/// The first of them.
 const FactorKernels& factor_kernels();
 
 }  // namespace pfv::kernels
