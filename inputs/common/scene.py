@@ -14,6 +14,7 @@ BIN = Path(os.environ.get("PFV_BIN", Path(__file__).resolve().parents[2] / "buil
 # settings that many scenes have: (type, default, what it is)
 SEED = (int, 1, "sample number, 1, 2, ...")
 TOP = (str, "plane", "plane or extent: where the flow box ends")
+SHAKE = (float, 0.0, "force that keeps each grain moving, over its weight in the fluid")
 OUT = (str, "post/sample", "where results go, without ending")
 
 

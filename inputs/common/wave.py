@@ -106,8 +106,9 @@ def clear(folder, out):
 
 
 def run(folder, settings, measures, out, amplitude, duration, viscosity=None, top="plane",
-        words="", records=400, snapshots=25):
-    """One wave on the bed that OUT of the settings holds; `amplitude` is a formula of v_t."""
+        words="", records=400, snapshots=25, shake=0.0, shake_end=math.inf):
+    """One wave on the bed that OUT of the settings holds; `amplitude` is a formula of v_t. `shake`
+    is the force that keeps each grain moving, over its weight in the fluid (in.shake)."""
     grains = settings["N"]
     viscosity = viscosity or bed.viscosity_for(grains)
     step = time_step(grains)
@@ -121,7 +122,8 @@ def run(folder, settings, measures, out, amplitude, duration, viscosity=None, to
                  "viscosity": viscosity, "time_step": step, "steps": steps, "every": every,
                  "stride": stride, "report": max(1, steps // 100), "amplitude": amplitude,
                  "top": top_words(top, measures), "words": words or "retriangulate 0.01",
-                 "sensors": sensor_words(measures), "out": out, "name": folder.name}
+                 "sensors": sensor_words(measures), "out": out, "name": folder.name,
+                 "g": bed.BUOYANT, "shake": shake, "shake_end": min(shake_end, duration + 1.0)}
     said, cpu = scene.liggghts(folder, f"in.{folder.name}", variables, out + "_run",
                                scene.Progress("wave", 0, steps, step))
     figures = {"viscosity": viscosity, "time_step": step, "steps": steps, "cpu": cpu,

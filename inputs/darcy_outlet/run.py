@@ -19,7 +19,8 @@ KEYS = {
     "ACROSS": (int, 10, "grains across the box; 20 as in the example"),
     "TIME": (float, 0.7, "simulated time, s"),
     "EVERY": (int, 100, "steps between two looks at the porosity, darcy_grid"),
-    "RETRIANGULATE": (float, 0.05, "pore strain, pfv"),
+    "RETRIANGULATE": (str, "0.05", "pore strain, or 'mean STRAIN', pfv"),
+    "COUPLE": (int, 1, "time steps between two flow steps"),
     "DRAG": (str, "di_felice", "di_felice or kozeny_carman, darcy_grid"),
     "FLUX": (float, 1e-5, "inflow, m3/s"),
     "VISCOSITY": (float, 1e-3, "Pa s"),
@@ -32,8 +33,10 @@ def settings_of(words):
     settings = scene.parse(words, KEYS)
     if settings["MODEL"] not in ("pfv", "darcy_grid", "both"):
         raise scene.BadSetting("MODEL must be pfv, darcy_grid or both")
-    if settings["ACROSS"] < 4 or settings["TIME"] <= 0 or settings["EVERY"] < 1:
-        raise scene.BadSetting("ACROSS must be at least 4, TIME above 0, EVERY at least 1")
+    if settings["ACROSS"] < 4 or settings["TIME"] <= 0 or min(settings["EVERY"],
+                                                                  settings["COUPLE"]) < 1:
+        raise scene.BadSetting("ACROSS must be at least 4, TIME above 0, EVERY and COUPLE at "
+                               "least 1")
     return settings
 
 
@@ -50,6 +53,7 @@ def run_model(model, settings):
     if model == "darcy_grid":
         cells = " ".join(map(str, CELLS))
         words = f"darcy_grid {cells} every {settings['EVERY']} drag {settings['DRAG']}"
+    words += f" couple_every {settings['COUPLE']}"
     step = time_step(settings["ACROSS"])
     steps = 100 * max(1, round(settings["TIME"] / step / 100))
     out = f"{settings['OUT']}_{model}"

@@ -23,6 +23,7 @@ KEYS = {
     "AMPLITUDES": (str, "200,600,1200", "Pa, with commas"),
     "PERIODS": (str, "0.5,2", "s, with commas"),
     "END": (float, 3.0, "duration of each run, s"),
+    "SHAKE": scene.SHAKE,
     "TOP": scene.TOP,
     "OUT": scene.OUT,
 }
@@ -67,8 +68,8 @@ def draw(rows, settings, consolidation, base):
 def work(words):
     settings = scene.parse(words, KEYS)
     amplitudes, periods = (scene.numbers(settings, key) for key in ("AMPLITUDES", "PERIODS"))
-    if settings["N"] < 100:
-        raise scene.BadSetting("N must be at least 100")
+    if settings["N"] < 100 or settings["SHAKE"] < 0:
+        raise scene.BadSetting("N must be at least 100, SHAKE at least 0")
     measures = bed.prepare(SCENE, "loose", settings["N"], settings["SEED"], settings["OUT"])
     consolidation = consolidation_time(settings, measures)
     rows = []
@@ -78,7 +79,7 @@ def work(words):
             out = f"{settings['OUT']}_{amplitude:g}_{period:g}"
             run = wave.run(SCENE, settings, measures, out,
                            f"{amplitude:g}*sin({2 * math.pi / period:.12g}*v_t)", settings["END"],
-                           top=settings["TOP"], snapshots=5,
+                           top=settings["TOP"], snapshots=5, shake=settings["SHAKE"],
                            records=max(400, round(40 * settings["END"] / period)))
             rows.append({"amplitude": amplitude, "period": period, "cpu": run.figures["cpu"],
                          "built_up": float(mean_over_period(run, period).max()),

@@ -23,6 +23,8 @@ KEYS = {
     "AMPLITUDE": (float, 1000.0, "of the wave, Pa"),
     "END": (float, 2.0, "duration, s"),
     "VISCOSITIES": (str, "0.1,1,5", "over that of the other wave scenes, with commas"),
+    "SHAKE": scene.SHAKE,
+    "SHAKE_END": (float, 0.5, "how long, s"),
     "TOP": scene.TOP,
     "OUT": scene.OUT,
 }
@@ -61,8 +63,8 @@ def draw(runs, base):
 def work(words):
     settings = scene.parse(words, KEYS)
     factors = scene.numbers(settings, "VISCOSITIES")
-    if settings["N"] < 100:
-        raise scene.BadSetting("N must be at least 100")
+    if settings["N"] < 100 or settings["SHAKE"] < 0:
+        raise scene.BadSetting("N must be at least 100, SHAKE at least 0")
     measures = bed.prepare(SCENE, "loose", settings["N"], settings["SEED"], settings["OUT"])
     runs = []
     for k, factor in enumerate(factors):
@@ -71,7 +73,8 @@ def work(words):
         # the wave comes up within a tenth of a second
         runs.append(wave.run(SCENE, settings, measures, f"{settings['OUT']}_{k + 1}",
                              f"{settings['AMPLITUDE']:g}*(1.0-exp(-v_t/0.05))", settings["END"],
-                             viscosity=viscosity, top=settings["TOP"]))
+                             viscosity=viscosity, top=settings["TOP"], shake=settings["SHAKE"],
+                             shake_end=settings["SHAKE_END"]))
     found = [measures_of(run) for run in runs]
     print(f"\nWave of {settings['AMPLITUDE']:g} Pa on a loose bed of {settings['N']} grains, "
           f"porosity {measures['core_porosity']:.3f}, {settings['END']:g} s")
