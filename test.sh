@@ -22,18 +22,18 @@ ASAN_OPTIONS=detect_leaks=0 "$root/build-sanitize/bin/unit_tests" --gtest_brief=
 
 if [ "${1:-}" = long ]; then
   export PFV_REBUILDS=2000
-  echo "fuzz under the address, leak and undefined-behaviour sanitizers"
-  cmake --build "$root/build-sanitize" --target fuzz
+  echo "unit tests, fuzz, command and coupled runs under the address, leak and undefined-behaviour sanitizers"
+  cmake --build "$root/build-sanitize"
+  "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
   UBSAN_OPTIONS=halt_on_error=1 "$root/build-sanitize/bin/fuzz" --count 1000 --seed 1
-  echo "unit tests, fuzz and coupled runs under the leak sanitizer"
-  cmake -S "$root" --preset leaks > /dev/null
-  cmake --build "$root/build-leaks"
-  "$root/build-leaks/bin/unit_tests" --gtest_brief=1
-  "$root/build-leaks/bin/fuzz" --count 1000 --seed 1
   logs=$(mktemp -d)
-  LSAN_OPTIONS=log_path=$logs/leak:exitcode=0:fast_unwind_on_malloc=0 \
-    ctest --test-dir "$root/build-leaks" --output-on-failure \
-      -R '^coupled\.(restart|implicit|ranks|extremes)$'
+  echo "reports of the runs: $logs"
+  # endurance: what the address sanitizer keeps back is not the memory that it measures
+  ASAN_OPTIONS=log_path=$logs/leak UBSAN_OPTIONS=halt_on_error=1 \
+    LSAN_OPTIONS=exitcode=0:fast_unwind_on_malloc=0 \
+    PFV_SANITIZER_RUNTIME=$(gcc -print-file-name=libasan.so) \
+    ctest --test-dir "$root/build-sanitize" --output-on-failure \
+      -R '^(coupled|command)\.' -E '^coupled\.endurance$'
   "$root/tests/leaks.py" "$logs"/leak.*
   rm -r "$logs"
   "$root/build/bin/fuzz" --count 10000 --seed 1

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What scripts do with a fix: load, remove, replace, run again, change, clear."""
 import math
+import os
 import shutil
 import unittest
 
@@ -27,8 +28,11 @@ class Control(CoupledTest):
         script = HEAD + FIX + dump("d.dump") + "run 20\n"
         _, own = self.dumped(script)
         (self.folder / "d.dump").unlink()
+        # a sanitizer's runtime has to come before what was compiled for it
+        libraries = os.environ.get("PFV_SANITIZER_RUNTIME", "").split()
+        libraries.append(str(BIN / "libliggghts_pfv.so"))
         _, preloaded = self.dumped(script, command=shutil.which("liggghts"),
-                                   environment={"LD_PRELOAD": str(BIN / "libliggghts_pfv.so")})
+                                   environment={"LD_PRELOAD": " ".join(libraries)})
         self.assertEqual(own, preloaded)
 
     @unittest.skipUnless(shutil.which("liggghts"), "the stock binary is not installed")

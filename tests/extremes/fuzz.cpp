@@ -163,14 +163,14 @@ std::string description(const Case& c) {
 // ------------------------------------------------------------------------------------- the checks
 
 struct Worst {
-  double mass = 0.0, balance = 0.0, leak = 0.0;
-  std::uint64_t mass_case = 0, balance_case = 0, leak_case = 0;
+  double mass = 0.0, balance = 0.0;
+  std::uint64_t mass_case = 0, balance_case = 0;
 };
 
 struct Outcome {
   bool refused = false;
   std::string message, failure;
-  double mass = 0.0, balance = 0.0, leak = 0.0;
+  double mass = 0.0, balance = 0.0;
   void fail(const std::string& what) {
     if (failure.empty()) failure = what;
   }
@@ -218,13 +218,6 @@ void check_result(const Case& c, const pfv::Flow& flow, bool at_rest, Outcome& o
   outcome.mass = std::max(outcome.mass, std::abs(report.mass_error));
   if (c.options.partition != pfv::Partition::yade)  // YADE's own forces do not balance
     outcome.balance = std::max(outcome.balance, report.force_balance_error);
-  double traffic = 0.0;  // what round-off of the pressures is multiplied with
-  const double largest = flow.pore_pressures().size() > 0
-                             ? flow.pore_pressures().cwiseAbs().maxCoeff() : 0.0;
-  for (const double conductance : flow.throat_conductances()) traffic += conductance * largest;
-  const double net = report.inflow - report.outflow - report.volume_rate_sum - report.storage_rate;
-  traffic = std::max({traffic, report.inflow, report.outflow, std::abs(report.volume_rate_sum)});
-  if (traffic > 0.0) outcome.leak = std::max(outcome.leak, std::abs(net) / traffic);
 }
 
 void run_flow(Case& c, Outcome& outcome) {
@@ -256,7 +249,6 @@ void run_flow(Case& c, Outcome& outcome) {
 /// Conductances may span 25 decades here: a direct solve then keeps this much of the mass, and what
 /// would lose more is refused. Forces balance to round-off whatever the pressures are.
 constexpr double largest_mass_error = 1e-3;
-constexpr double round_off = 1e-15;  // of what throats could carry: then nothing flows at all
 constexpr double largest_balance_error = 1e-12;
 /// Images of one pore may be joined with flat cells in different ways, as long as what leaves the cell and
 /// what comes in differ by no more of the largest throat (same_area in periodic_images.cpp).
@@ -274,7 +266,7 @@ Outcome examine(Case c) {
   } catch (const std::exception& other) {
     outcome.fail(std::string("an error that is not the library's own: ") + other.what());
   }
-  if (outcome.mass > largest_mass_error && outcome.leak > round_off)
+  if (outcome.mass > largest_mass_error)
     outcome.fail("mass error " + std::to_string(outcome.mass));
   if (outcome.balance >
       (c.box.any_periodic() ? largest_periodic_balance_error : largest_balance_error))
@@ -317,7 +309,6 @@ struct Tally {
     if (o.refused) ++messages[sort_of(o.message)];
     if (o.mass > worst.mass) worst.mass = o.mass, worst.mass_case = number;
     if (o.balance > worst.balance) worst.balance = o.balance, worst.balance_case = number;
-    if (o.leak > worst.leak) worst.leak = o.leak, worst.leak_case = number;
   }
 
   void print() const {
@@ -333,7 +324,6 @@ struct Tally {
     };
     line("mass error", worst.mass, worst.mass_case);
     line("force balance error", worst.balance, worst.balance_case);
-    line("mass lost of what throats could carry", worst.leak, worst.leak_case);
   }
 };
 
