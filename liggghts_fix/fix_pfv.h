@@ -55,6 +55,7 @@ class FixPfv : public Fix {
   void everywhere(Work&& work);  ///< work that fails on all ranks or on none
   template <typename Work>
   void on_root(Work&& work);  ///< work of rank 0, whose failure the others are told of
+  void stop(const char* file, int line, const std::string& problem);
   void fail_together(std::string message);
   std::string with_culprits(const std::exception& problem) const;  ///< its text, once they are written
 

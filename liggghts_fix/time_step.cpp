@@ -52,7 +52,7 @@ void FixPfv::bind_coupling() {
                     "each step"
                   : others.obstacle_to_long_steps();
   if (settings_.coupling != PfvCoupling::automatic && !obstacle_.empty())
-    error->fix_error(FLERR, this, obstacle_.c_str());
+    stop(FLERR, obstacle_);
 }
 
 /// Whether the flow may have to know the forces that act beside its own.

@@ -143,11 +143,14 @@ class CoupledTest(unittest.TestCase):
         return done.stdout
 
     def refused(self, script, *parts, **options):
-        """A run that must stop with one error line holding all the parts."""
+        """A run that must stop with one error line, the last of all, holding all the parts."""
         done = self.launch(script, **options)
         self.assertNotEqual(done.returncode, 0, done.stdout[-2000:])
-        errors = [line for line in done.stdout.splitlines() if line.startswith("ERROR")]
+        lines = done.stdout.splitlines()
+        errors = [line for line in lines if line.startswith("ERROR")]
         self.assertEqual(len(errors), 1, done.stdout[-2000:] + done.stderr[-2000:])
+        if "Fix pfv" in errors[0] and options.get("ranks", 1) == 1:
+            self.assertEqual(lines[-1], errors[0])
         for part in parts:
             self.assertIn(part, errors[0])
 
