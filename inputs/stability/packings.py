@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random packings with a given size ratio, as data files for LIGGGHTS and as CSV, and `pfv time-step` on them."""
+"""Random packings with a given size ratio, as data files for LIGGGHTS and as CSV, and what `pfv
+time-step` says of them."""
 import csv
 import functools
 import json
@@ -38,27 +39,30 @@ def read_csv(path):
 
 
 @functools.cache
-def packed(ratio, count, solid, seed=1):
+def packed(ratio, count, solid, gap=0.0, seed=1):
     """Name of a packing whose diameters are spread evenly over 1 to `ratio` times the smallest: grains at
-    random places push each other apart until the contacts bear what the box demands. `solid` is their
-    volume over that of the box. post/NAME.csv and post/NAME.data hold it."""
+    random places push each other apart until they rest, and shrink by `gap` of their size. `solid` is
+    their volume over that of the box. post/NAME.csv and post/NAME.data hold it."""
     name = f"ratio_{ratio:g}_{count}_{solid:g}_{seed}"
     rng = np.random.default_rng(seed)
     radii = np.sort(rng.uniform(1.0, ratio, count))[::-1]
-    radii *= EDGE * (solid / (4 / 3 * math.pi * (radii**3).sum())) ** (1 / 3)
+    radii *= (1 + gap) * EDGE * (solid / (4 / 3 * math.pi * (radii**3).sum())) ** (1 / 3)
     grains = np.column_stack([scattered(radii, rng), radii]).tolist()
     data = POST / f"{name}.data"
     write_data(data, grains, 0.0, random.Random(1))
     mass = DENSITY * 4 / 3 * math.pi * radii[-1]**3
     step = 0.2 * math.sqrt(mass / STIFFNESS)
-    must(liggghts("in.pack", data=data, dt=step, steps=10000, drag=0.02 * mass / step,
+    must(liggghts("in.pack", data=data, dt=step, steps=5000, rest=25000, drag=0.02 * mass / step,
                   out=f"post/{name}.rest"))
     rows = (POST / f"{name}.rest").read_text().splitlines()[9:]
     if len(rows) != count:
-        raise SystemExit(f"stability: {count - len(rows)} grains of {name} left the box while they were packed")
-    at_rest = [[float(word) for word in row.split()[1:]] for row in rows]
+        raise SystemExit(f"stability: {count - len(rows)} grains of {name} left the box")
+    at_rest = np.array([row.split()[1:] for row in rows], dtype=float)
+    at_rest[:, 3] /= 1 + gap
+    at_rest = at_rest.tolist()
     write_csv(POST / f"{name}.csv", at_rest)
-    write_data(data, at_rest, 1e-9, random.Random(1))
+    # so slow that no grain moves by a part of its contact overlaps during a run
+    write_data(data, at_rest, 1e-4, random.Random(1))
     return name
 
 
@@ -78,8 +82,8 @@ def overlaps(grains):
 def time_step(packing, *words, viscosity=1.0, law="hydraulic_radius", edge=EDGE, faces=DRAINED):
     """(report of `pfv time-step` on a CSV file, {id: V* of the grains looked at})"""
     report, matrices = POST / "time_step.json", POST / "time_step.csv"
-    call = [str(BIN / "pfv"), "time-step", "--packing", str(packing), "--box", "0", repr(edge), "0",
-            repr(edge), "0", repr(edge), *faces, "--viscosity", repr(viscosity), "--grain-density",
+    call = [str(BIN / "pfv"), "time-step", "--packing", str(packing), "--box",
+            *["0", repr(edge)] * 3, *faces, "--viscosity", repr(viscosity), "--grain-density",
             repr(DENSITY), "--conductance", law, "--report", str(report), "--matrices",
             str(matrices), *map(str, words)]
     done = subprocess.run(call, capture_output=True, text=True)

@@ -10,13 +10,21 @@ import sys
 
 import accuracy
 import beyond
+import compressible
 import costs
 import growth_rate
 import limits
+import maps
+import regions
+import stiffness
+import thesis
 from tables import write_page
 
-TABLES = {"limits": limits, "beyond": beyond, "accuracy": accuracy, "costs": costs,
-          "growth": growth_rate}
+TABLES = {"limits": limits.table, "maps": maps.table,
+          "stiffness": stiffness.table, "regions": regions.table,
+          "thesis": thesis.table, "compressible": compressible.table,
+          "conservation": compressible.conservation, "beyond": beyond.table,
+          "accuracy": accuracy.table, "costs": costs.table, "growth": growth_rate.table}
 
 
 def main(words):
@@ -28,7 +36,7 @@ def main(words):
                          f"with {', '.join(TABLES)}")
     for name in names:
         print(f"{name}:", flush=True)
-        table = TABLES[name].table()
+        table = TABLES[name]()
         if write:
             write_page(name, table)
 

@@ -72,12 +72,14 @@ def rows_of(screen):
     return rows
 
 
-def growth(data, viscosity, step, steps, words):
+def growth(data, viscosity, step, steps, words, script="in.stability", **variables):
     """Kinetic energy at the end of a run over that at its beginning; infinite where it broke off."""
-    ok, screen = liggghts("in.stability", data=data, viscosity=viscosity, dt=repr(step),
-                          steps=steps, words=words)
+    ok, screen = liggghts(script, data=data, viscosity=viscosity, dt=repr(step), steps=steps,
+                          words=words, **variables)
     rows = rows_of(screen)
     if not rows or rows[0][0] != 0:
+        if "went out of control" in screen:  # refused at once
+            return math.inf
         must((False, screen))
     energies = [row[1] for row in rows]
     broken = not ok or not all(math.isfinite(energy) for energy in energies)

@@ -3,6 +3,7 @@
 from samples import SCENE
 
 PAGE = SCENE.parents[1] / "doc" / "stability.md"
+FIGURES = PAGE.parent / "figures"
 
 
 class Table:

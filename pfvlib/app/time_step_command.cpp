@@ -150,7 +150,8 @@ void write_report_of(const std::string& path, const Limits& limits) {
 
 void print(const Limits& limits, std::ostream& out) {
   const auto line = [&](const char* name, double step, const Worst* worst) {
-    out << std::left << std::setw(52) << name << std::setprecision(4) << step << " s";
+    out << std::left << std::setw(52) << name << std::setprecision(4);
+    std::isfinite(step) ? out << step << " s" : out << "no limit";
     if (worst && worst->id >= 0) out << ", sphere " << worst->id;
     out << '\n';
   };
@@ -228,6 +229,9 @@ void time_step(const TimeStepArguments& arguments, std::ostream& out) {
   if (arguments.matrices)
     write_matrices(*arguments.matrices, packing, columns, matrices, request.fluid.viscosity);
   if (arguments.report) write_report_of(*arguments.report, limits);
+  // An output on the same stream must stay what its format says.
+  for (const auto& output : {arguments.report, arguments.matrices})
+    if (output && detail::is_standard_output(*output)) return;
   print(limits, out);
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """pfv time-step: the true limit of the explicit coupling, the papers' estimates, the matrices V*."""
 import csv
+import json
 import math
 import unittest
 
@@ -83,6 +84,15 @@ class TimeStep(CommandTest):
         self.assertAlmostEqual(soft["contact"]["time_step"] / stiff["contact"]["time_step"], 100,
                                delta=1e-6)
         self.assertIn("eq. 2.14", text)
+
+    def test_a_report_on_standard_output_stands_alone_and_no_limit_is_null(self):
+        grain = self.write("one.csv", "id,x,y,z,radius\n7,0.5,0.5,0.5,0.2\n")
+        words = ["time-step", "--packing", grain, *UNIT_BOX, "--grain-density", "2600",
+                 "--contact-stiffness", "1e4", "--face", "zlo:pressure=0"]
+        report = json.loads(self.run_pfv(*words, "--report", "/dev/stdout").stdout)
+        self.assertIsNone(report["contact_limit"])
+        self.assertEqual(report["viscous"]["sphere"], 7)
+        self.assertRegex(self.run_pfv(*words).stdout, "omega_max +no limit")
 
     def test_what_cannot_be_right_is_refused(self):
         whole = ["--packing", DENSE, *UNIT_BOX, "--grain-density", "2600"]
