@@ -106,12 +106,13 @@ def clear(folder, out):
 
 
 def run(folder, settings, measures, out, amplitude, duration, viscosity=None, top="plane",
-        words="", records=400, snapshots=25, shake=0.0, shake_end=math.inf):
+        words="", records=400, snapshots=25, shake=0.0, shake_end=math.inf,
+        step_factor=1.0):
     """One wave on the bed that OUT of the settings holds; `amplitude` is a formula of v_t. `shake`
     is the force that keeps each grain moving, over its weight in the fluid (in.shake)."""
     grains = settings["N"]
     viscosity = viscosity or bed.viscosity_for(grains)
-    step = time_step(grains)
+    step = step_factor * time_step(grains)
     steps = math.ceil(duration / step)
     every = max(1, steps // records)
     stride = every * max(1, records // snapshots)
