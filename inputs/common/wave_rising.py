@@ -15,7 +15,7 @@ KEYS = {
     "SHAKE": scene.SHAKE,
     "STEP": (float, 1.0, "time step over its default"),
     "TOP": scene.TOP,
-    "WORDS": (str, "", "more words for fix pfv"),
+    "WORDS": (str, "retriangulate mean 0.001", "more words for fix pfv"),
     "OUT": scene.OUT,
 }
 THESIS = {"dense": {"porosity": 0.368, "amplitude": 1500.0},

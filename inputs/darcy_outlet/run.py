@@ -17,10 +17,10 @@ import scene  # noqa: E402
 KEYS = {
     "MODEL": (str, "both", "pfv, darcy_grid or both"),
     "ACROSS": (int, 10, "grains across the box; 20 as in the example"),
-    "TIME": (float, 0.7, "simulated time, s"),
+    "TIME": (float, 1.0, "simulated time, s"),
     "EVERY": (int, 100, "steps between two looks at the porosity, darcy_grid"),
     "RETRIANGULATE": (str, "0.05", "pore strain, or 'mean STRAIN', pfv"),
-    "COUPLE": (int, 1, "time steps between two flow steps"),
+    "COUPLE": (int, 10, "time steps between two flow steps"),
     "DRAG": (str, "di_felice", "di_felice or kozeny_carman, darcy_grid"),
     "FLUX": (float, 1e-5, "inflow, m3/s"),
     "VISCOSITY": (float, 1e-3, "Pa s"),
@@ -52,7 +52,8 @@ def run_model(model, settings):
     words = f"pfv conductance hydraulic_radius retriangulate {settings['RETRIANGULATE']}"
     if model == "darcy_grid":
         cells = " ".join(map(str, CELLS))
-        words = f"darcy_grid {cells} every {settings['EVERY']} drag {settings['DRAG']}"
+        looks = max(1, settings["EVERY"] // settings["COUPLE"])  # of fix pfv: in flow steps
+        words = f"darcy_grid {cells} every {looks} drag {settings['DRAG']}"
     words += f" couple_every {settings['COUPLE']}"
     step = time_step(settings["ACROSS"])
     steps = 100 * max(1, round(settings["TIME"] / step / 100))
