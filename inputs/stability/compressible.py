@@ -29,7 +29,7 @@ LARGE_STRAIN, LARGE_MODULUS = 1e-2, 1e7
 THRESHOLDS = [1.0, 1e-2, 1e-3]  # of new networks, pore strain
 LOAD, VISCOSITY = 1.0, 25.0  # N, Pa s
 STEP, STEPS, EVERY = 1e-4, 6000, 20
-EARLY = (0.05, 0.12)  # s: the lid has come to rest, drainage has not reached the top
+EARLY = (0.08, 0.15)  # s: the lid has come to rest, drainage has not reached the top
 
 
 def name():
