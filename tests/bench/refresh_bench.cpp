@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Would conductances that are refreshed on the old graph pay, between two triangulations?
-//   pfv_refresh_bench [SPHERES]
+//   pfv_refresh_bench [SPHERES]     pfv_refresh_bench cells: how many cells a move changes
 // A packing is compressed, each sphere also in a way of its own. For the moved spheres: the network as it
 // was, the same cells measured anew (centres, throats, conductances, S; numeric factor on the kept ordering),
 // and a new network. Errors beside the new network: flow rate and forces under a pressure difference.
@@ -16,11 +16,16 @@
 #include "physics/throats.hpp"
 #include "solve/pressure_system.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <memory>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -123,23 +128,67 @@ double difference(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 
 }  // namespace
 
+namespace {
+
+PackingArrays moved_packing(const PackingArrays& first, double strain, Box& box) {
+  const double radius = first.radii.mean();
+  PackingArrays moved = first;
+  std::minstd_rand random(1);
+  std::normal_distribution<double> normal;
+  for (Eigen::Index k = 0; k < moved.positions.cols(); ++k)
+    for (int axis = 0; axis < 3; ++axis) moved.positions(axis, k) += strain * radius * normal(random);
+  moved.positions = moved.positions.cwiseMax(1e-3 * radius).cwiseMin(1.0 - 1e-3 * radius);
+  moved.positions.row(2) *= 1.0 - strain;
+  box.upper[2] *= 1.0 - strain;
+  return moved;
+}
+
+std::vector<std::array<int, 4>> named_cells(const PackingArrays& packing, const Box& box) {
+  PoreNetwork network = build_network(spheres_of(packing, box), box.lower).network;
+  for (auto& cell : network.cell_vertices) std::sort(cell.begin(), cell.end());
+  std::sort(network.cell_vertices.begin(), network.cell_vertices.end());
+  return network.cell_vertices;
+}
+
+/// Part of the cells of a moved packing that its network did not have before: none where the graph
+/// stays, and with it the symbolic factor.
+void print_new_cells() {
+  std::printf("| spheres |");
+  const std::vector<double> strains{1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
+  for (const double strain : strains) std::printf(" %g %% |", 100.0 * strain);
+  std::printf("\n|--|--|--|--|--|--|\n");
+  for (const int count : {300, 1000, 5000}) {
+    const PackingArrays first = dense_packing(count);
+    const Box still = through_flow();
+    const auto before = named_cells(first, still);
+    std::printf("| %d |", count);
+    for (const double strain : strains) {
+      Box box = still;
+      const auto now = named_cells(moved_packing(first, strain, box), box);
+      std::vector<std::array<int, 4>> created;
+      std::set_difference(now.begin(), now.end(), before.begin(), before.end(),
+                          std::back_inserter(created));
+      std::printf(" %zu of %zu |", created.size(), now.size());
+    }
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == "cells") {
+    print_new_cells();
+    return 0;
+  }
   const int count = argc > 1 ? std::atoi(argv[1]) : 5000;
   const PackingArrays first = dense_packing(count);
-  const double radius = first.radii.mean();
   std::printf("%d spheres\n\n| compression | mean pore strain | flow rate, error: old | refreshed | forces, rms error: old | "
               "refreshed | refresh / rebuild, CPU |\n|--|--|--|--|--|--|--|\n", count);
   for (const double strain : {1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2}) {
-    PackingArrays moved = first;
     Box box = through_flow();
     const Solved old = built(spheres_of(first, box), box);
-    std::minstd_rand random(1);
-    std::normal_distribution<double> normal;
-    for (Eigen::Index k = 0; k < moved.positions.cols(); ++k)
-      for (int axis = 0; axis < 3; ++axis) moved.positions(axis, k) += strain * radius * normal(random);
-    moved.positions = moved.positions.cwiseMax(1e-3 * radius).cwiseMin(1.0 - 1e-3 * radius);
-    moved.positions.row(2) *= 1.0 - strain;
-    box.upper[2] *= 1.0 - strain;
+    const PackingArrays moved = moved_packing(first, strain, box);
     const Spheres spheres = spheres_of(moved, box);
     const Solved now = built(spheres, box), again = refreshed(old, spheres, box);
     const auto rate = [&](const Solved& other) { return 100.0 * (other.rate / now.rate - 1.0); };

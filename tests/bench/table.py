@@ -52,8 +52,8 @@ def phases(report):
 
 
 def steps(runs):
-    return table("wall ms of a step", [(name, milliseconds(report, "wall_seconds", "step"))
-                                       for name, report in runs.items()])
+    return table("wall ms", [(f"{what}, {name}", milliseconds(report, "wall_seconds", what))
+                             for what in ("rebuild", "step") for name, report in runs.items()])
 
 
 def main():
@@ -70,7 +70,7 @@ Load average before the run {report['machine']['load_before']:.1f}, after it {re
 
 {phases(report)}
 
-`rebuild` is everything from a packing to forces, `step` what a kept network costs while the grains'
+`rebuild` is everything from a packing to forces where a network was before, `first` the same from nothing, `step` what a kept network costs while the grains'
 velocities change by 0.1 % a step.
 
 ## Threads and precision

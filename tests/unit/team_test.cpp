@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -45,6 +46,18 @@ TEST(Team, CutsRowsIntoPiecesThatCoverThemOnce) {
     EXPECT_EQ(done, std::vector<int>(rows, 1)) << threads << " threads";
     const int none = 0;
     team.run_rows(&none, 0, [&](int first, int last) { EXPECT_EQ(first, last); });
+  }
+}
+
+TEST(Team, PassesOnWhatAPartHasThrownAndGoesOn) {
+  for (const int threads : {1, 3}) {
+    pfv::Team team(threads);
+    EXPECT_THROW(team.run(8, [](int part) {
+      if (part == 5) throw std::runtime_error("part 5");
+    }), std::runtime_error);
+    std::atomic<int> done{0};
+    team.run_with_space(8, [&](int, int thread) { done += thread < threads; });
+    EXPECT_EQ(done, 8) << threads << " threads";
   }
 }
 

@@ -37,7 +37,7 @@ struct Task {
       }
       if (options.forces) {
         const PhaseClock clock(result.seconds.forces);
-        make_force_matrices(*result.network, options, result.counts);
+        make_force_matrices(*result.network, options, *alone, result.counts);
       }
     }
     return result;

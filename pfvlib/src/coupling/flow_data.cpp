@@ -255,7 +255,7 @@ void FlowData::multiply_forces(const ForceMatrix& matrix, ForceParts parts,
 
 void FlowData::compute_forces(const Packing& packing) {
   const PhaseClock clock(seconds.forces);
-  make_force_matrices(*built, options, counts);
+  make_force_matrices(*built, options, *team, counts);
   const std::vector<int>& columns = built->grains.columns;
   const auto active = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index n = packing.size();

@@ -137,7 +137,7 @@ void FlowData::run_implicit(const Packing& packing, double step, double at_time,
   const Eigen::RowVectorXd per_mass = yielding(grains, step);
   moving = !at_rest(packing, box) || (per_mass.array() > 0.0).any();
   refuse_undetermined(moving);
-  make_force_matrices(*built, options, counts);
+  make_force_matrices(*built, options, *team, counts);
   factor_implicit(per_mass);
   relaxation =
       std::min(1.0, prompt_limits * time_step_limit(grains.masses, grains.pistons) / step);

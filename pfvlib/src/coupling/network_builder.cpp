@@ -25,11 +25,11 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Build
     const PhaseClock clock(cost.seconds.throats);
     const Spheres& spheres = fresh->vertices;
     fresh->boundaries = find_pore_boundaries(fresh->network, box);
-    fresh->throats = measure_throats(fresh->network, fresh->boundaries, spheres);
+    fresh->throats = measure_throats(fresh->network, fresh->boundaries, spheres, *team);
     if (options.partition == Partition::yade)
       apply_yade_partition(fresh->throats, fresh->network, spheres, box);
     fresh->conductances = conductances(options.conductance, fluid.viscosity, fresh->network,
-                                       fresh->throats, spheres);
+                                       fresh->throats, spheres, *team);
     for (std::size_t t = 0; t < fresh->throats.conductance_factor.size(); ++t)
       fresh->conductances.value[t] *= fresh->throats.conductance_factor[t];
     fresh->base_area = base_areas(fresh->network, fresh->boundaries, spheres);
@@ -79,17 +79,20 @@ void make_volume_rates(BuiltNetwork& built) {
     built.volume_rate_matrix = volume_rate_matrix(built.network, built.vertices);
 }
 
-void make_force_matrices(BuiltNetwork& built, const Options& options, Counts& counts) {
+void make_force_matrices(BuiltNetwork& built, const Options& options, Team& team,
+                         Counts& counts) {
   if (built.force_matrix) return;
   const int active = built.grains.spheres.size();
   built.viscous_shares =
       viscous_shares(options.conductance, built.network, built.throats, built.vertices);
   built.force_matrix =
-      force_matrix(built.network, built.throats, built.viscous_shares, active, {true, true});
+      force_matrix(built.network, built.throats, built.viscous_shares, active, {true, true},
+                   team);
   ++counts.force_matrix;
   if (options.split_forces)
     built.pressure_force_matrix =
-        force_matrix(built.network, built.throats, built.viscous_shares, active, {true, false});
+        force_matrix(built.network, built.throats, built.viscous_shares, active, {true, false},
+                     team);
   if (options.shear_viscous)
     built.shear_pairs = shear_pairs(built.network, built.throats, built.vertices);
   if (options.sphere_pressure)

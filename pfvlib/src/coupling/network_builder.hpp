@@ -41,7 +41,7 @@ void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double
 void make_volume_rates(BuiltNetwork& built);
 
 /// S and what the options want beside, where they are not there yet.
-void make_force_matrices(BuiltNetwork& built, const Options& options, Counts& counts);
+void make_force_matrices(BuiltNetwork& built, const Options& options, Team& team, Counts& counts);
 
 /// Why a network cannot be factored: where its conductances are the smallest and the largest.
 SolverError too_far_apart(const BuiltNetwork& built, const Fluid& fluid,

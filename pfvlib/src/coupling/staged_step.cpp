@@ -53,7 +53,7 @@ double FlowData::time_step_limit(const Eigen::VectorXd& masses,
   const int spheres = built->grains.spheres.size();
   double eigenvalue = 0.0;
   if (built->unknowns.count > 0 && spheres > 0) {
-    make_force_matrices(*built, options, counts);
+    make_force_matrices(*built, options, *team, counts);
     make_volume_rates(*built);
     // similar to M^-1 S G^-1 E, and nearly symmetric
     Eigen::RowVectorXd root(spheres + 6);
@@ -89,7 +89,7 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
   stages = static_cast<int>(all.size());
   if (stages == 1) return solve_pressures(at_time, *built->solver);
 
-  make_force_matrices(*built, options, counts);
+  make_force_matrices(*built, options, *team, counts);
   const Eigen::RowVectorXd per_mass = yielding(grains, step);
   relative_pressures.setZero(built->network.pores());
   impose(at_time);  // the reference pressure acts on pistons

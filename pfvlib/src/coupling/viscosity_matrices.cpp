@@ -29,7 +29,7 @@ std::vector<Eigen::Matrix3d> FlowData::viscosity_matrices(const std::vector<int>
   std::vector<Eigen::Matrix3d> result(columns.size(), Eigen::Matrix3d::Zero());
   const int spheres = built->grains.spheres.size();
   if (spheres == 0) return result;
-  make_force_matrices(*built, options, counts);
+  make_force_matrices(*built, options, *team, counts);
   make_volume_rates(*built);
   const ForceMatrix columns_of_rates = energy_force_matrix(*built->volume_rate_matrix, spheres);
   const std::vector<int>& active = built->grains.columns;

@@ -5,8 +5,10 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace pfv {
@@ -53,8 +55,13 @@ struct Team::Workers {
   }
 
   void take_parts() {
-    for (int part; (part = next.fetch_add(1, std::memory_order_relaxed)) < parts;)
-      call(context, part);
+    try {
+      for (int part; (part = next.fetch_add(1, std::memory_order_relaxed)) < parts;)
+        call(context, part);
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (!error) error = std::current_exception();
+    }
   }
 
   void serve() {
@@ -84,6 +91,7 @@ struct Team::Workers {
   Call call = nullptr;
   const void* context = nullptr;
   int parts = 0;
+  std::exception_ptr error;
   std::atomic<std::uint64_t> round{0};
   std::atomic<int> busy{0}, next{0};
   std::mutex mutex;
@@ -108,6 +116,7 @@ void Team::run_parts(int parts, Call call, const void* context) {
   workers_->announce();
   workers_->take_parts();
   workers_->wait();
+  if (workers_->error) std::rethrow_exception(std::exchange(workers_->error, nullptr));
 }
 
 int Team::first_row(const int* row_begin, int rows, int part) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 namespace pfv {
@@ -19,12 +20,22 @@ class Team {
   int threads() const { return threads_; }
 
   /// Calls work(part) for each part in 0 ... parts - 1, each thread taking the next part that is left;
-  /// returns when all are done. `work` must not throw.
+  /// returns when all are done. Throws what one has thrown.
   template <class Work>
   void run(int parts, const Work& work) {
     run_parts(parts, [](const void* context, int part) {
       (*static_cast<const Work*>(context))(part);
     }, &work);
+  }
+
+  /// The same with work(part, thread), thread 0 ... threads() - 1: for work space, one a thread.
+  template <class Work>
+  void run_with_space(int parts, const Work& work) {
+    std::atomic<int> next{0};
+    run(threads_, [&](int thread) {
+      for (int part; (part = next.fetch_add(1, std::memory_order_relaxed)) < parts;)
+        work(part, thread);
+    });
   }
 
   /// Calls work(begin, end) on pieces of 0 ... rows - 1, one a thread, of about equal numbers of

@@ -108,36 +108,57 @@ bool is_closed(const Throats& throats, int t) {
   return throats.fluid_area[t] <= 1e-12 * throats.area[t];
 }
 
+namespace {
+
+struct Conductance {
+  double value = 0.0;
+  bool by_rule = false;
+};
+
+Conductance conductance_of(ConductanceLaw law, double viscosity, const PoreNetwork& network,
+                           const Throats& throats, const Spheres& spheres, int t) {
+  if (is_closed(throats, t)) return {0.0, true};
+  const double scale = 1.0 / (viscosity * throats.length[t]);
+  Conductance result;
+  if (law == ConductanceLaw::effective_radius) {
+    const double radius = effective_radius(network, throats, spheres, t, result.by_rule);
+    result.value = 2.0 * pi * std::pow(radius, 4) * scale;
+  } else if (law == ConductanceLaw::open_throat) {
+    const OpenThroat throat = open_throat(network, throats, spheres, t);
+    result = {throat.value * scale, throat.by_rule};
+  } else {
+    const double radius =
+        hydraulic_radius(throats, network.throat_pores[t], t, result.by_rule);
+    if (radius > 0.0) result.value = alpha * throats.fluid_area[t] * radius * radius * scale;
+  }
+  return result;
+}
+
+}  // namespace
+
 Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwork& network,
-                          const Throats& throats, const Spheres& spheres) {
+                          const Throats& throats, const Spheres& spheres, Team& team) {
+  constexpr int piece_size = 512;
   Conductances result;
   result.value.assign(network.throats(), 0.0);
-  for (int t = 0; t < network.throats(); ++t) {
-    if (is_closed(throats, t)) {
-      ++result.degenerate;
-      continue;
+  std::vector<int> by_rule((network.throats() + piece_size - 1) / piece_size, 0);
+  team.run(static_cast<int>(by_rule.size()), [&](int piece) {
+    const int last = std::min((piece + 1) * piece_size, network.throats());
+    for (int t = piece * piece_size; t < last; ++t) {
+      const Conductance own = conductance_of(law, viscosity, network, throats, spheres, t);
+      result.value[t] = own.value;
+      by_rule[piece] += own.by_rule;
     }
-    const double scale = 1.0 / (viscosity * throats.length[t]);
-    bool by_rule = false;
-    if (law == ConductanceLaw::effective_radius) {
-      const double radius = effective_radius(network, throats, spheres, t, by_rule);
-      if (by_rule) ++result.degenerate;
-      result.value[t] = 2.0 * pi * std::pow(radius, 4) * scale;
-      continue;
-    }
-    if (law == ConductanceLaw::open_throat) {
-      const OpenThroat throat = open_throat(network, throats, spheres, t);
-      result.value[t] = throat.value * scale;
-      if (throat.by_rule) ++result.degenerate;
-      continue;
-    }
-    const double radius = hydraulic_radius(throats, network.throat_pores[t], t, by_rule);
-    if (by_rule) ++result.degenerate;
-    if (radius > 0.0)
-      result.value[t] = alpha * throats.fluid_area[t] * radius * radius * scale;
-  }
+  });
+  for (const int count : by_rule) result.degenerate += count;
   close_what_round_off_hides(result, network);
   return result;
+}
+
+Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwork& network,
+                          const Throats& throats, const Spheres& spheres) {
+  Team alone;
+  return conductances(law, viscosity, network, throats, spheres, alone);
 }
 
 }  // namespace pfv

@@ -28,6 +28,8 @@ struct Conductances {
 /// most 100 sqrt(S), the effective radius 5 sqrt(S); a throat with less than 1e-14 of what either of its
 /// pores conducts in all is closed.
 Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwork& network,
+                          const Throats& throats, const Spheres& spheres, Team& team);
+Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwork& network,
                           const Throats& throats, const Spheres& spheres);
 
 /// Such a throat is closed whatever the law.

@@ -4,16 +4,11 @@
 #include "geometry/solid_angle.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace pfv {
 
 namespace {
-
-struct Entry {
-  int row;
-  int pore;
-  Eigen::Vector3d value;
-};
 
 /// A sphere this many times smaller than the largest of its facet stands in the open pore, where the
 /// flow is faster than at the surfaces that gamma counts. Fitted on the nine-sphere cell and on small
@@ -51,7 +46,7 @@ void normalise(ViscousShares& shares, const PoreNetwork& network, int t) {
       shares[f][k] = is_wall(network.facet_vertices[f][k]) ? 0.0 : 1.0 / count;
 }
 
-/// Visits (row, throat, area) for every facet vertex that takes a force.
+/// Visits (row, throat, facet, corner, area) for every facet vertex that takes a force.
 template <class Visit>
 void for_each_share(const PoreNetwork& network, const Throats& throats,
                     const ViscousShares& shares, int spheres, ForceParts parts, Visit&& visit) {
@@ -64,36 +59,92 @@ void for_each_share(const PoreNetwork& network, const Throats& throats,
         if (parts.viscous) area += throats.fluid_area[t] * shares[f][k];
         if (area != 0.0)
           visit(is_wall(vertex) ? spheres + wall_number(vertex) : network.vertex_sphere[vertex],
-                t, area);
+                t, f, k, area);
       }
 }
 
-/// Sorts the entries of each row by pore and adds those of one pore.
-ForceMatrix compress(std::vector<int> row_begin, std::vector<int> pore,
-                     std::vector<Eigen::Vector3d> value) {
-  ForceMatrix matrix;
-  const int rows = static_cast<int>(row_begin.size()) - 1;
-  matrix.row_begin.reserve(row_begin.size());
-  std::vector<int> order;
-  int kept = 0;
-  for (int row = 0; row < rows; ++row) {
-    order.clear();
-    for (int e = row_begin[row]; e < row_begin[row + 1]; ++e) order.push_back(e);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return pore[a] < pore[b]; });
-    const int begin = static_cast<int>(matrix.pore.size());
-    for (const int e : order) {
-      if (static_cast<int>(matrix.pore.size()) > begin && matrix.pore.back() == pore[e]) {
-        matrix.value.col(kept - 1) += value[e];
-        continue;
-      }
-      if (kept == matrix.value.cols())
-        matrix.value.conservativeResize(3, std::max(1024, 2 * kept));
-      matrix.pore.push_back(pore[e]);
-      matrix.value.col(kept++) = value[e];
+/// A vertex of a facet that takes a force, as one number.
+int corner_number(int facet, int k) { return 3 * facet + k; }
+
+/// Rows first ... last - 1 of S, made one after the other from the corners that act on each.
+class RowMaker {
+ public:
+  RowMaker(const PoreNetwork& network, const Throats& throats, const ViscousShares& shares,
+           ForceParts parts, const std::vector<int>& throat_of_facet)
+      : network_(network), throats_(throats), shares_(shares), parts_(parts),
+        throat_of_facet_(throat_of_facet), place_(network.pores(), -1) {}
+
+  /// Appends a row: its entries by ascending pores, those of one pore added in the order of the corners.
+  void add(const int* begin, const int* end) {
+    row_.clear();
+    for (const int* corner = begin; corner != end; ++corner) {
+      const int f = *corner / 3, k = *corner % 3, t = throat_of_facet_[f];
+      double area = 0.0;
+      if (parts_.pressure) area += throats_.facet_disc[f][k];
+      if (parts_.viscous) area += throats_.fluid_area[t] * shares_[f][k];
+      const Eigen::Vector3d force = area * throats_.normal.col(t);
+      take(network_.throat_pores[t][0], force);
+      take(network_.throat_pores[t][1], -force);
     }
-    matrix.row_begin.push_back(kept);
+    std::sort(row_.begin(), row_.end(),
+              [](const Entry& a, const Entry& b) { return a.pore < b.pore; });
+    for (const Entry& entry : row_) {
+      pore.push_back(entry.pore);
+      value.push_back(entry.value);
+      place_[entry.pore] = -1;
+    }
+    entries.push_back(static_cast<int>(row_.size()));
   }
-  matrix.value.conservativeResize(3, kept);
+
+  void reserve(std::size_t count) {
+    pore.reserve(count);
+    value.reserve(count);
+  }
+
+  std::vector<int> pore, entries;  ///< `entries`: of each row
+  std::vector<Eigen::Vector3d> value;
+
+ private:
+  struct Entry {
+    int pore;
+    Eigen::Vector3d value;
+  };
+
+  void take(int p, const Eigen::Vector3d& force) {
+    if (place_[p] < 0) {
+      place_[p] = static_cast<int>(row_.size());
+      row_.push_back({p, force});
+    } else {
+      row_[place_[p]].value += force;
+    }
+  }
+
+  const PoreNetwork& network_;
+  const Throats& throats_;
+  const ViscousShares& shares_;
+  ForceParts parts_;
+  const std::vector<int>& throat_of_facet_;
+  std::vector<Entry> row_;
+  std::vector<int> place_;  ///< in the row, by pore
+};
+
+ForceMatrix joined(std::vector<RowMaker>& makers) {
+  ForceMatrix matrix;
+  std::size_t entries = 0;
+  for (const RowMaker& maker : makers) {
+    entries += maker.pore.size();
+    for (const int count : maker.entries)
+      matrix.row_begin.push_back(matrix.row_begin.back() + count);
+  }
+  matrix.pore.reserve(entries);
+  matrix.value.resize(3, static_cast<Eigen::Index>(entries));
+  Eigen::Index column = 0;
+  for (RowMaker& maker : makers) {
+    matrix.pore.insert(matrix.pore.end(), maker.pore.begin(), maker.pore.end());
+    for (const Eigen::Vector3d& value : maker.value) matrix.value.col(column++) = value;
+    maker.pore = {};
+    maker.value = {};
+  }
   return matrix;
 }
 
@@ -115,22 +166,36 @@ ViscousShares viscous_shares(ConductanceLaw law, const PoreNetwork& network,
 }
 
 ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
-                         const ViscousShares& shares, int spheres, ForceParts parts) {
-  std::vector<int> row_begin(spheres + 7, 0);
+                         const ViscousShares& shares, int spheres, ForceParts parts, Team& team) {
+  const int rows = spheres + 6;
+  std::vector<int> begin(rows + 1, 0), throat_of_facet(network.throat_facets.back());
   for_each_share(network, throats, shares, spheres, parts,
-                 [&](int row, int, double) { row_begin[row + 1] += 2; });
-  for (int row = 0; row < spheres + 6; ++row) row_begin[row + 1] += row_begin[row];
-  std::vector<int> next(row_begin.begin(), row_begin.end() - 1);
-  std::vector<int> pore(row_begin.back());
-  std::vector<Eigen::Vector3d> value(row_begin.back());
-  for_each_share(network, throats, shares, spheres, parts, [&](int row, int t, double area) {
-    for (int side = 0; side < 2; ++side) {
-      const int entry = next[row]++;
-      pore[entry] = network.throat_pores[t][side];
-      value[entry] = (side == 0 ? area : -area) * throats.normal.col(t);
-    }
+                 [&](int row, int, int, int, double) { ++begin[row + 1]; });
+  for (int row = 0; row < rows; ++row) begin[row + 1] += begin[row];
+  std::vector<int> next(begin.begin(), begin.end() - 1), corners(begin.back());
+  for_each_share(network, throats, shares, spheres, parts,
+                 [&](int row, int t, int f, int k, double) {
+                   corners[next[row]++] = corner_number(f, k);
+                   throat_of_facet[f] = t;
+                 });
+  const int pieces = team.threads();
+  std::vector<RowMaker> makers(pieces, {network, throats, shares, parts, throat_of_facet});
+  for (RowMaker& maker : makers)  // a sphere meets a pore in each cell that has it for a vertex
+    maker.reserve(4 * static_cast<std::size_t>(network.cells()) / pieces + 64);
+  team.run(pieces, [&](int piece) {
+    const auto bound = [&](int number) {
+      return static_cast<int>(static_cast<std::int64_t>(rows) * number / pieces);
+    };
+    for (int row = bound(piece); row < bound(piece + 1); ++row)
+      makers[piece].add(corners.data() + begin[row], corners.data() + begin[row + 1]);
   });
-  return compress(std::move(row_begin), std::move(pore), std::move(value));
+  return joined(makers);
+}
+
+ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
+                         const ViscousShares& shares, int spheres, ForceParts parts) {
+  Team alone;
+  return force_matrix(network, throats, shares, spheres, parts, alone);
 }
 
 ForceMatrix energy_force_matrix(const VolumeRateMatrix& rates, int spheres) {
@@ -178,7 +243,7 @@ Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& thro
                                  const ViscousShares& shares, int spheres, ForceParts parts,
                                  const Eigen::Vector3d& gradient) {
   Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, spheres + 6);
-  for_each_share(network, throats, shares, spheres, parts, [&](int row, int t, double area) {
+  for_each_share(network, throats, shares, spheres, parts, [&](int row, int t, int, int, double area) {
     forces.col(row) -= area * gradient.dot(network.throat_offset(t)) * throats.normal.col(t);
   });
   return forces;

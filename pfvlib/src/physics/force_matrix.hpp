@@ -43,6 +43,8 @@ ViscousShares viscous_shares(ConductanceLaw law, const PoreNetwork& network,
 /// of A^f (p_i - p_j) n (viscous), as does a no-slip wall. Each throat hands out S (p_i - p_j) n in full,
 /// so the forces on spheres and faces balance for any pressures and shares.
 ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
+                         const ViscousShares& shares, int spheres, ForceParts parts, Team& team);
+ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
                          const ViscousShares& shares, int spheres, ForceParts parts);
 
 /// E^T: the force that does the work of the pressures on the change of the pores' volumes. Rows as in S,

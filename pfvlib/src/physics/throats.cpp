@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/throats.hpp"
 
+#include "geometry/arctangent.hpp"
 #include "geometry/disc_sections.hpp"
 #include "geometry/solid_angle.hpp"
 #include "network/facets.hpp"
+#include "physics/facet_shapes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pfv {
@@ -94,6 +97,29 @@ double disc_part(const std::array<Vertex, 3>& facet, int corner, const Spheres& 
   return area_in_disc(flat.polygon, radius);
 }
 
+/// A^k in a triangle, where its disc meets no other side and the chords it shares with other discs do not
+/// meet within it: a sector less what lies beyond each chord. Else a negative number.
+double disc_part_of_triangle(const std::array<Vertex, 3>& facet, int corner,
+                             const Spheres& spheres, const FacetShape& shape) {
+  const int next = (corner + 1) % 3, previous = (corner + 2) % 3;
+  const double radius = spheres.radii[facet[corner]];
+  if (2.0 * shape.area < radius * shape.side[next]) return -1.0;
+  double part = 0.5 * radius * radius * shape.angle[corner], cut = 0.0;
+  for (const auto& [other, distance] : {std::pair(next, shape.side[corner]),
+                                        std::pair(previous, shape.side[previous])}) {
+    const double r = spheres.radii[facet[other]];
+    if (distance >= radius + r) continue;
+    const double chord = 0.5 * (distance + (radius - r) * (radius + r) / distance);
+    if (chord <= 0.0) return -1.0;
+    if (chord >= radius) continue;
+    const double half = std::sqrt((radius - chord) * (radius + chord));
+    const double angle = arctangent(half, chord);
+    part -= 0.5 * (radius * radius * angle - chord * half);
+    cut += angle;
+  }
+  return cut <= shape.angle[corner] ? part : -1.0;
+}
+
 /// Centre of a throat's first or second pore; with periodic axes, of the image at the throat.
 Eigen::Vector3d pore_centre(const PoreNetwork& network, int t, int side) {
   const Eigen::Vector3d centre = network.pore_centres.col(network.throat_pores[t][side]);
@@ -123,6 +149,25 @@ void add_sphere(Halves& halves, const PoreNetwork& network, const Spheres& spher
     halves.gamma[side] += radius * radius * angle;
     halves.gamma_of_vertex[corner] += radius * radius * angle;
   }
+}
+
+/// Halves of a facet without walls.
+Halves halves_of(const FacetShape& shape, const std::array<Vertex, 3>& facet,
+                 const Spheres& spheres) {
+  Halves halves;
+  halves.height = shape.height;
+  for (int side = 0; side < 2; ++side)
+    halves.volume[side] = halves.phi[side] = shape.area * shape.height[side] / 3.0;
+  for (int k = 0; k < 3; ++k) {
+    const double radius = spheres.radii[facet[k]];
+    for (int side = 0; side < 2; ++side) {
+      const double angle = shape.solid_angle[k][side];
+      halves.phi[side] -= radius * radius * radius * angle / 3.0;
+      halves.gamma[side] += radius * radius * angle;
+      halves.gamma_of_vertex[k] += radius * radius * angle;
+    }
+  }
+  return halves;
 }
 
 /// The strip of wall under one side of the facet, out to P on either side; only where fluid sticks.
@@ -183,33 +228,79 @@ void add_to_pores(Throats& throats, const PoreNetwork& network, const Halves& ha
   }
 }
 
+/// Walls come last.
+bool has_wall(const std::array<Vertex, 3>& facet) { return is_wall(facet[2]); }
+
+/// `shapes` and `halves`: of the throat's facets.
 void measure_throat(Throats& throats, const PoreNetwork& network,
-                    const PoreBoundaries& boundaries, const Spheres& spheres, int t) {
+                    const PoreBoundaries& boundaries, const Spheres& spheres, int t,
+                    const FacetShape* shapes, Halves* halves) {
   double discs = 0.0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
     const auto& facet = network.facet_vertices[f];
-    const double area = area_vector(facet, spheres).norm();
-    const Eigen::Vector3d normal = unit_normal(facet, spheres);
-    const Halves halves = measure_halves(network, boundaries, spheres, t, f, area, normal);
-    add_to_pores(throats, network, halves, t);
-    throats.facet_gamma[f] = halves.gamma_of_vertex;
-    for (int k = 0; k < 3; ++k)
-      if (!is_wall(facet[k]))
-        discs += throats.facet_disc[f][k] = disc_part(facet, k, spheres, normal, area);
+    const FacetShape& shape = shapes[f - network.throat_facets[t]];
+    const bool walled = has_wall(facet);
+    const double area = walled ? area_vector(facet, spheres).norm() : shape.area;
+    const Eigen::Vector3d normal = walled ? unit_normal(facet, spheres) : shape.normal;
+    Halves& half = halves[f - network.throat_facets[t]];
+    half = walled ? measure_halves(network, boundaries, spheres, t, f, area, normal)
+                  : halves_of(shape, facet, spheres);
+    throats.facet_gamma[f] = half.gamma_of_vertex;
+    for (int k = 0; k < 3; ++k) {
+      if (is_wall(facet[k])) continue;
+      double part = walled ? -1.0 : disc_part_of_triangle(facet, k, spheres, shape);
+      if (part < 0.0) part = disc_part(facet, k, spheres, normal, area);
+      discs += throats.facet_disc[f][k] = part;
+    }
     throats.area[t] += area;
-    throats.volume[t] += halves.phi[0] + halves.phi[1];
+    throats.volume[t] += half.phi[0] + half.phi[1];
     // of the vertices' own sums, so that their shares of the viscous force add up to one
-    for (const double gamma : halves.gamma_of_vertex) throats.gamma[t] += gamma;
+    for (const double gamma : half.gamma_of_vertex) throats.gamma[t] += gamma;
     sum += area * normal;
   }
   if (network.throat_facets[t + 1] - network.throat_facets[t] == 1 || throats.area[t] == 0.0)
-    throats.normal.col(t) = unit_normal(network.facet_vertices[network.throat_facets[t]], spheres);
+    throats.normal.col(t) =
+        has_wall(network.facet_vertices[network.throat_facets[t]])
+            ? unit_normal(network.facet_vertices[network.throat_facets[t]], spheres)
+            : shapes->normal;
   else
     throats.normal.col(t) = sum / throats.area[t];
   throats.fluid_area[t] = std::max(0.0, throats.area[t] - discs);
   throats.length[t] = (pore_centre(network, t, 1) - pore_centre(network, t, 0)).norm();
 }
+
+/// Throats first ... last - 1; `halves`: of their facets.
+void measure_piece(Throats& throats, const PoreNetwork& network, const PoreBoundaries& boundaries,
+                   const Spheres& spheres, int first, int last, Halves* halves) {
+  const int first_facet = network.throat_facets[first];
+  std::array<int, facet_batch> facets, of;
+  std::array<FacetShape, facet_batch> measured;
+  std::vector<FacetShape> shapes(network.throat_facets[last] - first_facet);
+  int count = 0;
+  const auto empty = [&] {
+    if (count == 0) return;
+    measure_facets(network, spheres, facets.data(), of.data(), count, measured.data());
+    for (int i = 0; i < count; ++i) shapes[facets[i] - first_facet] = measured[i];
+    count = 0;
+  };
+  for (int t = first; t < last; ++t)
+    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
+      if (has_wall(network.facet_vertices[f])) continue;
+      facets[count] = f;
+      of[count++] = t;
+      if (count == facet_batch) empty();
+    }
+  empty();
+  for (int t = first; t < last; ++t) {
+    const int begin = network.throat_facets[t] - first_facet;
+    measure_throat(throats, network, boundaries, spheres, t, &shapes[begin], &halves[begin]);
+  }
+}
+
+/// Throats that a thread takes at a time, and those whose halves are kept until they are added to the
+/// pores, which is done in order.
+constexpr int piece_size = 512, round_size = 32 * piece_size;
 
 }  // namespace
 
@@ -222,12 +313,30 @@ double hydraulic_radius_of_pores(const Throats& throats, const std::array<int, 2
 }
 
 Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                        const Spheres& spheres) {
+                        const Spheres& spheres, Team& team) {
   Throats throats;
   resize(throats, network);
-  for (int t = 0; t < network.throats(); ++t)
-    measure_throat(throats, network, boundaries, spheres, t);
+  std::vector<Halves> halves;
+  for (int first = 0; first < network.throats(); first += round_size) {
+    const int last = std::min(first + round_size, network.throats());
+    const int first_facet = network.throat_facets[first];
+    halves.resize(network.throat_facets[last] - first_facet);
+    team.run((last - first + piece_size - 1) / piece_size, [&](int piece) {
+      const int begin = first + piece * piece_size, end = std::min(begin + piece_size, last);
+      measure_piece(throats, network, boundaries, spheres, begin, end,
+                    halves.data() + network.throat_facets[begin] - first_facet);
+    });
+    for (int t = first; t < last; ++t)
+      for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
+        add_to_pores(throats, network, halves[f - first_facet], t);
+  }
   return throats;
+}
+
+Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                        const Spheres& spheres) {
+  Team alone;
+  return measure_throats(network, boundaries, spheres, alone);
 }
 
 }  // namespace pfv

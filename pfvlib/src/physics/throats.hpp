@@ -3,6 +3,7 @@
 
 #include "network/pore_boundaries.hpp"
 #include "network/spheres.hpp"
+#include "parallel/team.hpp"
 #include "pfv/network.hpp"
 
 #include <array>
@@ -43,7 +44,9 @@ inline constexpr double alpha = 0.5;
 /// R_h of two whole pores, m; 0 where they have no solid surface.
 double hydraulic_radius_of_pores(const Throats& throats, const std::array<int, 2>& pores);
 
-/// Measures every throat. Pure; cost about 4 µs a sphere.
+/// Measures every throat. Pure; cost about 3 µs a sphere. No byte depends on the team.
+Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                        const Spheres& spheres, Team& team);
 Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
                         const Spheres& spheres);
 

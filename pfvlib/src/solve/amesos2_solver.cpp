@@ -152,7 +152,7 @@ class Amesos2Solver final : public CheckedSolver {
                        const Eigen::Matrix3Xd& coordinates) override {
     std::vector<int> permutation;
     if (kind() == SolverKind::cholmod)
-      permutation = fill_reducing_ordering(ordering_, matrix, coordinates);
+      permutation = fill_reducing_ordering(ordering_, matrix, coordinates, *team_);
     const Turn turn(trilinos_mutex);
     amesos2_ = {};
     matrix_ = tpetra_pattern(matrix, communicator_for(kind()));

@@ -2,7 +2,6 @@
 #include "solve/supernodal_factor.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -257,14 +256,13 @@ int SupernodalFactor::factor_above(const SymmetricRows& matrix, std::vector<Work
       const int threads = multiplications > worth_sharing ? team.threads() : 1;
       const int pieces = threads == 1 ? 1 : pieces_per_thread * threads;
       const int piece = rounded_up((block.height - first) / pieces + 1, tile_rows);
-      std::atomic<int> next{0};
-      team.run(threads, [&](int thread) {
-        for (int k; (k = next.fetch_add(1, std::memory_order_relaxed)) < pieces;) {
-          const Range rows{first + std::min(k * piece, block.height - first),
-                           first + std::min((k + 1) * piece, block.height - first)};
-          if (rows.begin < rows.end) visit(rows, work[thread]);
-        }
-      });
+      const auto visit_piece = [&](int k, int thread) {
+        const Range rows{first + std::min(k * piece, block.height - first),
+                         first + std::min((k + 1) * piece, block.height - first)};
+        if (rows.begin < rows.end) visit(rows, work[thread]);
+      };
+      if (threads == 1) return visit_piece(0, 0);
+      team.run_with_space(pieces, visit_piece);
     };
     in_pieces(0, products, [&](Range rows, WorkSpace& own) {
       for (std::size_t k = 0; k < shared.updating.size(); ++k)
@@ -295,10 +293,8 @@ int SupernodalFactor::factorize(const SymmetricRows& matrix, double lost_pivot, 
     own.updating.reserve(blocks_.size());
   }
   std::vector<int> lost(subtrees_.size(), none);
-  std::atomic<std::size_t> next{0};
-  team.run(team.threads(), [&](int thread) {
-    for (std::size_t k; (k = next.fetch_add(1, std::memory_order_relaxed)) < subtrees_.size();)
-      lost[k] = factor_subtree(subtrees_[k], matrix, work[thread]);
+  team.run_with_space(static_cast<int>(subtrees_.size()), [&](int k, int thread) {
+    lost[k] = factor_subtree(subtrees_[k], matrix, work[thread]);
   });
   int first = none;
   for (const int column : lost)
