@@ -54,8 +54,8 @@ def main():
     arguments = parser.parse_args()
     for name in arguments.tables or TABLES:
         table = TABLES[name](arguments.build)
-        mark = re.compile(f"(<!-- {name}: [^>]*-->\n).*?(\n<!-- end -->)", re.S)
-        text, count = mark.subn(lambda m: m[1] + table + m[2], DOCUMENT.read_text())
+        mark = re.compile(f"(<!-- {name}: [^>]*-->\n).*?(<!-- end -->)", re.S)
+        text, count = mark.subn(lambda m: m[1] + table + "\n" + m[2], DOCUMENT.read_text())
         if count != 1:
             raise SystemExit(f"{DOCUMENT.name} has no markers for {name}")
         DOCUMENT.write_text(text)
