@@ -307,7 +307,7 @@ void add_bench_options(CLI::App& command, BenchArguments& arguments) {
       ->capture_default_str();
   command.add_option("--precision", arguments.precision, "how cholmod keeps its factor")
       ->capture_default_str();
-  command.add_option("--threads", arguments.threads, "threads that share a step")
+  command.add_option("--threads", arguments.threads, "threads that share a rebuild or step")
       ->capture_default_str();
   command.add_option("--repeat", arguments.repeat, "repeats of each size")->capture_default_str();
   command.add_option("--predict", arguments.predict, "number of grains to predict a run for");

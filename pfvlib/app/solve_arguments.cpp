@@ -256,7 +256,7 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
                      "solves to a residual of 1e-9 (default " + arguments.precision + ")")
       ->option_text("double|mixed")->group(group);
   command.add_option("--threads", arguments.threads,
-                     "threads that share a step, 1 to 64; they change no result (default " +
+                     "threads that share a rebuild or step, 1 to 64; they change no result (default " +
                      arguments.threads + ")")
       ->option_text("N")->group(group);
   command.add_option("--repeat", arguments.repeat,
