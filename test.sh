@@ -41,7 +41,12 @@ if [ "${1:-}" = long ]; then
   "$root/run.sh" oedometer N=5000
   "$root/run.sh" oedometer study
   "$root/run.sh" stability write
-  "$root/run.sh" darcy_outlet
+  for scene in oedometer_large permeameter deposition darcy_outlet wave_still wave_dense \
+      wave_loose wave_permeability wave_oscillating shear_viscous; do
+    "$root/run.sh" "$scene"
+  done
+  "$root/run.sh" wave_dense SHAKE=0.5 RATE=100 AMPLITUDE=600
+  "$root/run.sh" wave_loose SHAKE=0.5 RATE=100 AMPLITUDE=600
   "$root/doc/accuracy.py"
   "$root/doc/error_vs_time.py" solvers thresholds coupling coupling_5000 sizes models scaling
   "$root/tests/bench/table.py"
