@@ -74,8 +74,9 @@ Times phases_of(const Seconds& s) {
           {"forces", s.forces},           {"rebuild", s.total}};
 }
 
-/// A network from nothing ("first"), another one in its place, as a run makes them, then steps on it. Grains speed up by 0.1 % a step: a solver that begins
-/// with the last step's pressures must find new ones, as in a run.
+/// A network from nothing ("first"), another one in its place, as a run makes them, then steps on it.
+/// Grains speed up by 0.1 % a step: a solver that begins with the last step's pressures must find new
+/// ones, as in a run.
 Sample measure_once(PackingArrays packing, const Options& options, Report& report) {
   constexpr int steps = 20;
   Flow flow(drained_box(), Fluid{}, options);
