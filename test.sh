@@ -29,12 +29,12 @@ if [ "${1:-}" = long ]; then
   logs=$(mktemp -d)
   echo "reports of the runs: $logs"
   # endurance: what the address sanitizer keeps back is not the memory that it measures
-  ASAN_OPTIONS=log_path=$logs/leak UBSAN_OPTIONS=halt_on_error=1 \
+  ASAN_OPTIONS=log_path=$logs/asan UBSAN_OPTIONS=log_path=$logs/ubsan:halt_on_error=1 \
     LSAN_OPTIONS=exitcode=0:fast_unwind_on_malloc=0 \
     PFV_SANITIZER_RUNTIME=$(gcc -print-file-name=libasan.so) \
     ctest --test-dir "$root/build-sanitize" --output-on-failure \
       -R '^(coupled|command)\.' -E '^coupled\.endurance$'
-  "$root/tests/leaks.py" "$logs"/leak.*
+  "$root/tests/sanitizer_reports.py" "$logs"/*
   rm -r "$logs"
   "$root/build/bin/fuzz" --count 10000 --seed 1
   "$root/build/bin/fuzz" --count 10000 --seed 2
