@@ -28,16 +28,13 @@ const char* name_of(PfvCoupling coupling) {
 /// The cheaper of the two couplings that go beyond the limit, by what a step costs in solves of the
 /// explicit coupling (doc/stability.md, costs): a stage is a solve and a product with E and S, about
 /// 1.6 sqrt(R) of them a step; an implicit step is one solve with a denser factor, made anew `steps`
-/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB. Staged
-/// steps were stable in all runs up to `tried` limits and not in all beyond.
+/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB.
 PfvCoupling cheaper(double ratio, double steps, Eigen::Index grains) {
   constexpr double of_a_stage = 1.15, of_an_implicit_step = 8.0, of_its_factor = 800.0;
-  constexpr double tried = 100.0;
   constexpr Eigen::Index largest = 20000;
   const double staged = of_a_stage * 1.6 * std::sqrt(ratio);
   const double implicit = of_an_implicit_step + of_its_factor / steps;
-  return grains <= largest && (ratio > tried || implicit < staged) ? PfvCoupling::implicit
-                                                                   : PfvCoupling::staged;
+  return grains <= largest && implicit < staged ? PfvCoupling::implicit : PfvCoupling::staged;
 }
 
 }  // namespace

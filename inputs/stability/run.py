@@ -11,6 +11,8 @@ import sys
 import accuracy
 import beyond
 import compressible
+import consolidations
+import convergence
 import costs
 import growth_rate
 import limits
@@ -24,7 +26,9 @@ TABLES = {"limits": limits.table, "maps": maps.table,
           "stiffness": stiffness.table, "regions": regions.table,
           "thesis": thesis.table, "compressible": compressible.table,
           "conservation": compressible.conservation, "beyond": beyond.table,
-          "accuracy": accuracy.table, "costs": costs.table, "growth": growth_rate.table}
+          "accuracy": accuracy.table, "convergence": convergence.table,
+          "consolidations": consolidations.table, "costs": costs.table,
+          "growth": growth_rate.table}
 
 
 def main(words):

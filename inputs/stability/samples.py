@@ -51,23 +51,24 @@ def must(ok_and_screen):
 
 
 @functools.cache
-def sample(name):
-    """Data file of the settled grains, relative to the scene."""
+def sample(name, cells=5, **contacts):
+    """Data file of the settled grains, cells along each edge, relative to the scene."""
     rng = random.Random(1)
-    data = SCENE / "post" / f"{name}.data"
-    write_data(data, grid(SAMPLES[name], rng), 0.0, rng)
-    must(liggghts("in.settle", data=data, out=f"post/{name}.rest"))
-    rows = (SCENE / "post" / f"{name}.rest").read_text().splitlines()[9:]
+    label = f"{name}_{cells}"
+    data = SCENE / "post" / f"{label}.data"
+    write_data(data, grid(SAMPLES[name], rng, cells), 0.0, rng)
+    must(liggghts("in.settle", data=data, out=f"post/{label}.rest", **contacts))
+    rows = (SCENE / "post" / f"{label}.rest").read_text().splitlines()[9:]
     # so slow that no grain moves by a part of its contact overlaps during a run
     write_data(data, [[float(word) for word in row.split()[1:]] for row in rows], 1e-9, rng)
-    return f"post/{name}.data"
+    return f"post/{label}.data"
 
 
-def rows_of(screen):
+def rows_of(screen, columns=4):
     rows = []
     for line in screen.splitlines():
         words = line.split()
-        if len(words) == 4 and re.fullmatch(r"\d+", words[0]):
+        if len(words) == columns and re.fullmatch(r"\d+", words[0]):
             rows.append([float(word) for word in words])
     return rows
 

@@ -78,8 +78,8 @@ class Implicit(SettledTest):
     def test_staged_and_implicit_bear_the_load_where_the_explicit_coupling_throws_the_lid(self):
         mass = 0.01
         limit = self.thermo(self.piston_script(1.0, mass, "", "run 0\n"))[0]["flow[6]"]
-        for words, ratio in (("coupling staged", 100), ("coupling implicit", 100),
-                             ("coupling implicit", 10000)):
+        for words, ratio in (("coupling staged", 100), ("coupling staged", 1000),
+                             ("coupling implicit", 100), ("coupling implicit", 10000)):
             screen = self.liggghts(self.piston_script(ratio * limit / STEP, mass, words,
                                                       "thermo 1\nrun 200\n"))
             self.assertIn("pistons 1", screen)

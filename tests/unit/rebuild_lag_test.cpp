@@ -68,7 +68,7 @@ const Forces& explicit_step(Flow& flow, const PackingArrays& packing) {
 }
 
 const Forces& staged_step(Flow& flow, const PackingArrays& packing) {
-  static const Eigen::VectorXd masses = Eigen::VectorXd::Constant(packing.ids.size(), 1e-7);
+  static const Eigen::VectorXd masses = Eigen::VectorXd::Constant(packing.ids.size(), 1e-5);
   static const Eigen::Matrix3Xd others = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
   GrainDynamics grains;
   new (&grains.masses) Eigen::Map<const Eigen::VectorXd>(masses.data(), masses.size());

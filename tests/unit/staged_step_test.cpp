@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <gtest/gtest.h>
 
 namespace pfv {
@@ -83,49 +84,56 @@ struct Braked {
 };
 
 TEST(StagedStep, ExplicitStepGrowsBeyondTheLimitAndStagedStepDoesNot) {
-  Braked explicit_run, staged_run;
+  Braked explicit_run;
   const double dt = 20.0 * explicit_run.limit(), start = explicit_run.energy();
   for (int step = 0; step < 10; ++step)
     explicit_run.move(explicit_run.flow.step(explicit_run.packing.view(), dt).total, dt);
   EXPECT_GT(explicit_run.energy(), 1e6 * start);
 
-  for (const double ratio : {20.0, 100.0}) {
-    Braked run;
-    double last = run.energy();
-    for (int step = 0; step < 10; ++step) {
-      run.move(run.flow.step_staged(run.packing.view(), ratio * run.limit(), run.dynamics()).total,
-               ratio * run.limit());
-      EXPECT_LT(run.energy(), last) << ratio;
-      last = run.energy();
-    }
-    EXPECT_GT(run.flow.stages(), 1);
+  Braked run;
+  double last = run.energy();
+  for (int step = 0; step < 10; ++step) {
+    run.move(run.flow.step_staged(run.packing.view(), dt, run.dynamics()).total, dt);
+    EXPECT_LT(run.energy(), last);
+    last = run.energy();
   }
+  EXPECT_GT(run.flow.stages(), 1);
 }
 
-TEST(StagedStep, StableAtAThousandTimesTheLimit) {
-  // The papers' S is not the transpose of E: in a few modes the fluid feeds energy, some 1e-5 of it
-  // a step and limit (1 % a step here), which contacts hide. Of the rest, motions that squeeze no pore
-  // keep their energy: 0.31 of the start is left, where the explicit step would have 1e33 times more.
-  Braked run;
-  const double start = run.energy();
-  for (int step = 0; step < 10; ++step)
-    run.move(run.flow.step_staged(run.packing.view(), 1000.0 * run.limit(), run.dynamics()).total,
-             1000.0 * run.limit());
-  EXPECT_LT(run.energy(), 0.32 * start);
+TEST(StagedStep, FarBeyondTheLimitItFeedsLessThanTheStepIsLong) {
+  // The papers' S is not the transpose of E: in a few modes the fluid feeds energy, here 1e-4 of it a limit
+  // of time, which contacts hide. Beyond 30 limits a step the stages take part of S alone: 0.96 % and 1.6 %
+  // a step were measured at R = 100 and 1000, where S itself feeds 1.04 % and 10.4 %. Of the rest, motions that
+  // squeeze no pore keep their energy.
+  for (const auto& [ratio, fed] : {std::pair(100.0, 1.0102), std::pair(1000.0, 1.019)}) {
+    Braked run;
+    const double dt = ratio * run.limit(), start = run.energy();
+    const auto steps = [&](int count) {
+      for (int step = 0; step < count; ++step)
+        run.move(run.flow.step_staged(run.packing.view(), dt, run.dynamics()).total, dt);
+      return run.energy();
+    };
+    const double early = steps(200), late = steps(50);
+    EXPECT_LT(early, 21.0 * start);
+    EXPECT_LT(late, early * std::pow(fed, 50)) << ratio;
+  }
 }
 
 /// Spheres that overlap by most of their radii: S is far from a transpose of E there, and the fluid feeds
 /// energy to motions at any time step.
 struct Feeding {
-  PackingArrays packing = ::support::packing_of({{0.6507, 0.3026, 0.1932, 0.2143},
-                                                 {0.6943, 0.4208, 0.1098, 0.0217},
-                                                 {0.6891, 0.4254, 0.1112, 0.0077},
-                                                 {0.4010, 0.8096, 0.8564, 0.3704},
-                                                 {0.6915, 0.3145, 0.5260, 0.1190},
-                                                 {0.7036, 0.2893, 0.5440, 0.0857}});
+  PackingArrays packing = ::support::packing_of(
+      {{0.6377, 0.1333, 0.7586, 0.2961}, {0.6431, 0.1482, 0.7321, 0.2363},
+       {0.5018, 0.123, 0.8088, 0.0464}, {0.4895, 0.1208, 0.819, 0.016},
+       {0.4887, 0.1203, 0.8199, 0.0147}, {0.4872, 0.1217, 0.8189, 0.011},
+       {0.487, 0.1233, 0.8172, 0.0076}, {0.4852, 0.1217, 0.8194, 0.0029},
+       {0.2171, 0.7767, 0.8685, 0.3991}, {0.106, 0.642, 0.9215, 0.1346},
+       {0.1642, 0.5968, 0.9395, 0.0384}, {0.1744, 0.6001, 0.9283, 0.0196},
+       {0.172, 0.6078, 0.9281, 0.0105}, {0.1722, 0.6004, 0.9311, 0.0028},
+       {0.1724, 0.6001, 0.9317, 0.0014}, {0.7521, 0.7455, 0.4635, 0.2457}});
   Eigen::VectorXd masses = 4e3 * packing.radii.array().cube();
   Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, masses.size());
-  Flow flow{::support::upward_box(Wall::symmetry), ::support::viscosity_one()};
+  Flow flow{::support::upward_box(Wall::no_slip), ::support::viscosity_one()};
   double limit;
 
   Feeding() {
@@ -141,27 +149,38 @@ struct Feeding {
 
 TEST(StagedStep, ThatGoesOutOfControlIsRefusedAndTheImplicitOneTakesItsPlace) {
   Feeding grains;
-  const double dt = 1e3 * grains.limit;
+  const double dt = 29.0 * grains.limit;
   try {
     grains.flow.step_staged(grains.packing.view(), dt, grains.dynamics());
     FAIL() << "not refused";
   } catch (const UnstableStep& error) {
-    ::support::expect_line(error.what(), "1e+03 limits");
-    ::support::expect_line(error.what(), "sphere 2");
+    ::support::expect_line(error.what(), "29 limits");
+    ::support::expect_line(error.what(), "sphere 7");
     ::support::expect_line(error.what(), "implicit");
   }
   EXPECT_EQ(grains.flow.time(), 0.0);
   grains.flow.step_implicit(grains.packing.view(), dt, grains.dynamics());
   EXPECT_EQ(grains.flow.time(), dt);
   // the imposed 1 Pa and the grains' own inertia
-  EXPECT_LT(grains.flow.pore_pressures().cwiseAbs().maxCoeff(), 1.2);
+  EXPECT_LT(grains.flow.pore_pressures().cwiseAbs().maxCoeff(), 1.6);
   EXPECT_LT(std::abs(grains.flow.report().mass_error), 1e-9);
 }
 
-TEST(StagedStep, OfTheSamePackingAtTenLimitsKeepsItsBound) {
+TEST(StagedStep, OfTheSamePackingKeepsItsBoundAtTenLimits) {
   Feeding grains;
   grains.flow.step_staged(grains.packing.view(), 10.0 * grains.limit, grains.dynamics());
   EXPECT_GT(grains.flow.stages(), 1);
+}
+
+TEST(StagedStep, WhereTheTransposeOfTheVolumeRatesIsMuchStrongerThanSIsRefused) {
+  Feeding grains;
+  try {
+    grains.flow.step_staged(grains.packing.view(), 1e3 * grains.limit, grains.dynamics());
+    FAIL() << "not refused";
+  } catch (const UnstableStep& error) {
+    ::support::expect_line(error.what(), "overlap");
+    ::support::expect_line(error.what(), "implicit");
+  }
 }
 
 TEST(StagedStep, BelowTheLimitItIsThePlainStep) {

@@ -20,9 +20,8 @@
 
 namespace pfv {
 
-/// What implicit steps need besides.
+/// What implicit steps need besides E^T.
 struct ImplicitFactor {
-  ForceMatrix energy_forces;    ///< E^T
   ImplicitSystem system;
   std::unique_ptr<LinearSolver> solver;
   Eigen::RowVectorXd yielding;  ///< dt/m of the grains and the six faces whose A is in the factor
@@ -55,11 +54,12 @@ struct BuiltNetwork {
   ViscousShares viscous_shares;  ///< made with the force matrix
   std::optional<ForceMatrix> force_matrix;
   std::optional<ForceMatrix> pressure_force_matrix;
+  std::optional<ForceMatrix> energy_forces;  ///< E^T
   std::optional<SurfacePressure> surface_pressure;
   std::optional<std::vector<ShearPair>> shear_pairs;
   std::optional<SolidUnion> solid;
   std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis
-  std::optional<double> time_step_limit;  ///< for `limit_masses`
+  std::optional<double> time_step_limit, stage_limit;  ///< for `limit_masses`
   Eigen::VectorXd limit_masses;           ///< of the spheres of the packing and the six faces
   std::optional<ImplicitFactor> implicit;
   std::vector<double> strain_volume;  ///< volume that a pore's strain refers to, bounded below

@@ -31,6 +31,7 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     for (const Isolated& isolated : built->system.isolated)
       counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
     stages = 1;
+    solved_implicitly = coupling == Coupling::implicit;
     force_lag.resize(0);
     mean_motion.resize(3, 0);
     refuse_shear_forces(coupling);
@@ -49,16 +50,16 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     dt = step;
     solved_box = box;
     solved = true;
-    if (advance) end_step(step, coupling);
+    if (advance) end_step(step);
   }
   wall_total += wall_seconds() - wall_start;
   return forces;
 }
 
-void FlowData::end_step(double step, Coupling coupling) {
+void FlowData::end_step(double step) {
   time += step;
   add_strain(step);
-  if (coupling == Coupling::implicit)
+  if (force_lag.size() > 0)
     lagged += relaxation * (relative_pressures - lagged);
   else
     lagged.resize(0);
@@ -270,9 +271,9 @@ void FlowData::compute_forces(const Packing& packing) {
     multiply_forces(*built->pressure_force_matrix, {true, false}, of_pressure);
     spread(fluid_forces - of_pressure, forces.viscous);
   }
-  if (force_lag.size() > 0)  // the work of the change of pressure is that of E^T (implicit step)
+  if (force_lag.size() > 0)  // the work of the change of pressure is that of E^T
     fluid_forces.leftCols(active) +=
-        multiply(built->implicit->energy_forces, relative_pressures - force_lag).leftCols(active);
+        multiply(*built->energy_forces, relative_pressures - force_lag).leftCols(active);
   spread(fluid_forces, forces.total);
   if (options.split_forces) forces.pressure = forces.total - forces.viscous;
   if (options.shear_viscous) add_shear_forces(packing);

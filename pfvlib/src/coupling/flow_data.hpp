@@ -2,8 +2,10 @@
 #pragma once
 
 #include "coupling/background_rebuild.hpp"
+#include "physics/chebyshev_stages.hpp"
 #include "pfv/flow.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace pfv {
@@ -19,6 +21,15 @@ struct Balance {
 
 /// How the forces of a step are found from the velocities of its beginning.
 enum class Coupling { explicit_step, staged, implicit };
+
+/// What the stages of one step integrate; 3 x (active spheres + 6), and one entry each of them.
+struct StagedMotion {
+  std::vector<ChebyshevStage> stages;
+  double ratio;                 ///< of the step to the limit of the explicit coupling
+  Eigen::Matrix3Xd start;       ///< velocities, m/s
+  Eigen::Matrix3Xd held;        ///< forces other than those of the pressures, N
+  Eigen::RowVectorXd per_mass;  ///< dt/m, s/kg
+};
 
 struct Totals;
 
@@ -48,6 +59,7 @@ struct FlowData {
   // of the last call
   bool solved = false;
   bool moving = false;
+  bool solved_implicitly = false;  ///< the pressures are those of the matrix A
   double dt = 0.0;
   int stages = 1;
   double reference = 0.0;                ///< pressure that was subtracted before solving, Pa
@@ -57,9 +69,9 @@ struct FlowData {
   Eigen::VectorXd previous_pressures;    ///< the old pressures that the last solve started from, Pa
   Eigen::VectorXd relative_pressures;    ///< minus the reference, Pa
   Eigen::VectorXd pressures;             ///< Pa
-  Eigen::VectorXd lagged;     ///< relative pressures, relaxed over the last implicit steps, else empty
+  Eigen::VectorXd lagged;     ///< relative pressures, relaxed over the last long steps, else empty
   double relaxation = 1.0;    ///< part of the way that `lagged` goes towards the pressures of a step
-  Eigen::VectorXd force_lag;  ///< what the last call took for `lagged`, empty unless it was implicit
+  Eigen::VectorXd force_lag;  ///< pressures that S acted with in the last call; empty: the present
   Eigen::VectorXd right_side, solution;  ///< of the unknowns
   Eigen::Matrix3Xd fluid_forces;         ///< S p: 3 x (active spheres + 6), N
   Forces forces;
@@ -73,9 +85,12 @@ struct FlowData {
                         const GrainDynamics* grains = nullptr);
   double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
   std::vector<Eigen::Matrix3d> viscosity_matrices(const std::vector<int>& columns);
+  /// The same with E^T in place of S, which the stages take; after `time_step_limit`.
+  double stage_limit();
+  double stage_limit_near(double limit);
   /// The matrix of the last solve.
   const SymmetricMatrix& solved_matrix() const {
-    return force_lag.size() > 0 ? built->implicit->system.matrix : built->system.matrix;
+    return solved_implicitly ? built->implicit->system.matrix : built->system.matrix;
   }
   void require_result() const;
   /// Velocities that `rates` belong to, of active spheres and faces.
@@ -85,6 +100,10 @@ struct FlowData {
 
  private:
   std::optional<Balance> balance_;
+
+  /// Largest eigenvalue of M^-1 F G^-1 E, 1/s; F: pressures to forces on active spheres and faces.
+  double largest_drag(
+      const std::function<Eigen::Matrix3Xd(const Eigen::VectorXd&)>& forces_of_pressures);
 
   BuildSettings build_settings() const { return {box, fluid, options, team}; }
   void update_network(const Packing& packing, double step, bool advance);
@@ -116,6 +135,9 @@ struct FlowData {
   void check_dynamics(const GrainDynamics& grains, const Packing& packing) const;
   Eigen::RowVectorXd yielding(const GrainDynamics& grains, double step) const;
   Eigen::Matrix3Xd held_forces(const GrainDynamics& grains) const;
+  static double relaxation_of(double ratio);
+  void find_lag(const std::function<void(const Eigen::VectorXd&)>& solve);
+  void run_recursion(const StagedMotion& staged, double at_time, const Eigen::VectorXd& old);
   void run_stages(const Packing& packing, double step, double at_time,
                   const GrainDynamics& grains);
   /// UnstableStep where a staged step changed the velocities beyond its bound; all 3 x (active + 6), m/s.
@@ -124,7 +146,7 @@ struct FlowData {
   void run_implicit(const Packing& packing, double step, double at_time,
                     const GrainDynamics& grains);
   void factor_implicit(const Eigen::RowVectorXd& per_mass);
-  void end_step(double step, Coupling coupling);
+  void end_step(double step);
   void add_strain(double step);
   /// Sum of |changes| over sum of volumes.
   double mean_strain(const Eigen::VectorXd& changes) const;

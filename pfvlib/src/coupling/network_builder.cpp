@@ -44,7 +44,8 @@ void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double
   const bool compressible = settings.fluid.bulk_modulus.has_value();
   if (built.solver && (!compressible || step == built.storage_dt)) return;
   const bool new_pattern = !built.solver;
-  built.time_step_limit.reset();  // it belongs to the factor
+  built.time_step_limit.reset();  // they belong to the factor
+  built.stage_limit.reset();
   built.loses_digits.reset();
   if (built.implicit) built.implicit->yielding.resize(0);
   {
@@ -77,6 +78,13 @@ void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double
 void make_volume_rates(BuiltNetwork& built) {
   if (!built.volume_rate_matrix)
     built.volume_rate_matrix = volume_rate_matrix(built.network, built.vertices);
+}
+
+void make_energy_forces(BuiltNetwork& built) {
+  make_volume_rates(built);
+  if (!built.energy_forces)
+    built.energy_forces =
+        energy_force_matrix(*built.volume_rate_matrix, built.grains.spheres.size());
 }
 
 void make_force_matrices(BuiltNetwork& built, const Options& options, Team& team,

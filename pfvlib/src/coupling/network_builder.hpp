@@ -39,6 +39,8 @@ void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double
 
 /// E, where it is not there yet.
 void make_volume_rates(BuiltNetwork& built);
+/// E^T, likewise.
+void make_energy_forces(BuiltNetwork& built);
 
 /// S and what the options want beside, where they are not there yet.
 void make_force_matrices(BuiltNetwork& built, const Options& options, Team& team, Counts& counts);

@@ -2,11 +2,9 @@
 #include "coupling/flow_data.hpp"
 
 #include "pfv/error.hpp"
-#include "physics/chebyshev_stages.hpp"
-#include "physics/time_step_limit.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <string>
 
@@ -37,80 +35,34 @@ constexpr double allowed_change = 2.0;
 
 }  // namespace
 
-double FlowData::time_step_limit(const Eigen::VectorXd& masses,
-                                 const std::array<Piston, 6>& pistons) {
-  const auto count = static_cast<Eigen::Index>(packing_ids.size());
-  if (masses.size() != count)
-    throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
-                     std::to_string(count) + " spheres; give one a sphere");
-  Eigen::VectorXd all(count + 6);
-  all.head(count) = masses;
-  for (int face = 0; face < 6; ++face) all[count + face] = pistons[face].mass;
-  if (!(all.array() > 0.0).all())
-    throw InputError("time step limit: a mass is not a positive number; give kg");
-  if (built->time_step_limit && all == built->limit_masses) return *built->time_step_limit;
-  built->limit_masses = all;
-  const int spheres = built->grains.spheres.size();
-  double eigenvalue = 0.0;
-  if (built->unknowns.count > 0 && spheres > 0) {
-    make_force_matrices(*built, options, *team, counts);
-    make_volume_rates(*built);
-    // similar to M^-1 S G^-1 E, and nearly symmetric
-    Eigen::RowVectorXd root(spheres + 6);
-    for (int i = 0; i < spheres; ++i) root[i] = 1.0 / std::sqrt(masses[built->grains.columns[i]]);
-    for (int face = 0; face < 6; ++face) root[spheres + face] = 1.0 / std::sqrt(pistons[face].mass);
-    const auto drag = [&](const Eigen::VectorXd& u) {
-      const Eigen::Matrix3Xd v =
-          (u.reshaped(3, spheres + 6).array().rowwise() * root.array()).matrix();
-      const Eigen::VectorXd p = homogeneous_pressures(
-          *built, volume_rates(*built->volume_rate_matrix, v));
-      Eigen::Matrix3Xd force = forces_with_faces(*built, p) - shear_forces_of(v);
-      force.array().rowwise() *= root.array();
-      for (int face = 0; face < 6; ++face)  // guided along its axis
-        for (int axis = 0; axis < 3; ++axis)
-          if (axis != face / 2) force(axis, spheres + face) = 0.0;
-      return Eigen::VectorXd(force.reshaped());
-    };
-    eigenvalue = largest_eigenvalue(drag, 3 * (spheres + 6));
-  }
-  built->time_step_limit =
-      eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
-  return *built->time_step_limit;
-}
-
-/// Integrates m dv/dt = (other forces) + S p(v) over the step. The mean pressure and the mean volume
-/// rates are carried through the same recursion from zero; by linearity S times the mean pressure is
-/// the mean force, so that forces, fluxes and volumes of the step balance exactly.
-void FlowData::run_stages(const Packing& packing, double step, double at_time,
-                          const GrainDynamics& grains) {
-  check_dynamics(grains, packing);
-  const double limit = time_step_limit(grains.masses, grains.pistons);
-  const std::vector<ChebyshevStage> all = chebyshev_stages(2.0 * step / limit);
-  stages = static_cast<int>(all.size());
-  if (stages == 1) return solve_pressures(at_time, *built->solver);
-
-  make_force_matrices(*built, options, *team, counts);
-  const Eigen::RowVectorXd per_mass = yielding(grains, step);
-  relative_pressures.setZero(built->network.pores());
-  impose(at_time);  // the reference pressure acts on pistons
-  const Eigen::Matrix3Xd held = held_forces(grains);
-  const Eigen::Matrix3Xd start = motion_of(packing);
+/// Integrates m dv/dt = held + S q + E^T (p(v) - q) over the step, where q goes from p_old to p(v) as
+/// far as `relaxation` lets it: the stages take that part of S which does not outgrow the contacts. The
+/// mean pressure, volume rates and motion are carried through the same recursion from zero; by linearity
+/// they belong to the mean force, so that forces, fluxes and volumes of the step balance exactly.
+void FlowData::run_recursion(const StagedMotion& staged, double at_time,
+                             const Eigen::VectorXd& old) {
+  const Eigen::Matrix3Xd& start = staged.start;
   Eigen::Matrix3Xd before = start, now = start;
   Eigen::VectorXd mean_pressure = Eigen::VectorXd::Zero(built->network.pores());
   Eigen::VectorXd mean_rates = mean_pressure, pressure_before = mean_pressure,
                   rates_before = mean_pressure;
   mean_motion.setZero(3, start.cols());
   Eigen::Matrix3Xd motion_before = mean_motion, first_change;
-  for (const ChebyshevStage& stage : all) {
+  const auto forces = [&](const Eigen::Matrix3Xd& motion) {
+    if (relaxation == 1.0)
+      return Eigen::Matrix3Xd(staged.held + forces_with_faces(*built, relative_pressures) +
+                              shear_forces_of(motion));
+    const Eigen::VectorXd followed = old + relaxation * (relative_pressures - old);
+    return Eigen::Matrix3Xd(staged.held + forces_with_faces(*built, followed) +
+                            multiply(*built->energy_forces, relative_pressures - followed) +
+                            shear_forces_of(motion));
+  };
+  for (const ChebyshevStage& stage : staged.stages) {
     const Eigen::Matrix3Xd motion = now;
     rates_of_motion(motion);
     solve_pressures(at_time, *built->solver);
     const Eigen::Matrix3Xd change =
-        ((held + forces_with_faces(*built, relative_pressures) + shear_forces_of(motion))
-             .array()
-             .rowwise() *
-         per_mass.array())
-            .matrix();
+        (forces(motion).array().rowwise() * staged.per_mass.array()).matrix();
     if (first_change.size() == 0) first_change = change;
     Eigen::Matrix3Xd next =
         (1.0 - stage.m - stage.n) * start + stage.m * now + stage.n * before + stage.f * change;
@@ -125,10 +77,47 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
     carry(mean_rates, rates_before, rates);
     carry(mean_motion, motion_before, motion);
   }
-  refuse_feeding(now - start, first_change, per_mass, step / limit);
+  refuse_feeding(now - start, first_change, staged.per_mass, staged.ratio);
   relative_pressures = mean_pressure;
   rates = mean_rates;
   pressures = relative_pressures.array() + reference;
+}
+
+/// The limit with E^T, or with S where that is shorter: what lies between them is within both.
+double FlowData::stage_limit_near(double limit) {
+  constexpr double farthest = 100.0;  // ten times the stages; in beds of grains they are 1.1 apart
+  if (limit > farthest * stage_limit())
+    throw UnstableStep("a staged step this long needs the transpose of the volume rates for S, whose "
+                       "drag is more than " + std::to_string(static_cast<int>(farthest)) + " times as "
+                       "strong here: spheres overlap by most of their radii; take the implicit "
+                       "coupling or a much shorter step");
+  return std::min(limit, stage_limit());
+}
+
+void FlowData::run_stages(const Packing& packing, double step, double at_time,
+                          const GrainDynamics& grains) {
+  check_dynamics(grains, packing);
+  const double limit = time_step_limit(grains.masses, grains.pistons);
+  if (chebyshev_stages(2.0 * step / limit).size() == 1)
+    return solve_pressures(at_time, *built->solver);
+
+  relaxation = relaxation_of(step / limit);
+  const bool lags = relaxation < 1.0;
+  make_force_matrices(*built, options, *team, counts);
+  StagedMotion staged;
+  staged.ratio = step / limit;
+  staged.stages = chebyshev_stages(2.0 * step / (lags ? stage_limit_near(limit) : limit));
+  stages = static_cast<int>(staged.stages.size());
+  relative_pressures.setZero(built->network.pores());
+  impose(at_time);  // the reference pressure acts on pistons
+  staged.held = held_forces(grains);
+  staged.start = motion_of(packing);
+  staged.per_mass = yielding(grains, step);
+  const auto solve = [&](const Eigen::VectorXd& old) { run_recursion(staged, at_time, old); };
+  if (!lags) return solve({});
+  find_lag(solve);
+  solve(lagged);
+  force_lag = lagged + relaxation * (relative_pressures - lagged);
 }
 
 void FlowData::refuse_feeding(const Eigen::Matrix3Xd& change, const Eigen::Matrix3Xd& explicit_one,

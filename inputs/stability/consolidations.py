@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Full consolidations far beyond the explicit limit, networks replaced as the grains settle."""
+import math
+import os
+from dataclasses import dataclass
+
+from samples import DENSITY, SCENE, liggghts, must, printed, rows_of, sample
+from tables import Table
+
+CELLS = 4  # along each edge
+STEP = 5.6e-4  # s: two thirds of the contact limit of these grains
+STEPS = 112  # times R; a multiple of INSTANTS for each R
+GRAVITY = 10.0  # m/s2: under more these few grains change places, each run at its own time
+INSTANTS = 160
+RUNS = {10: ("staged", "implicit"), 100: ("staged", "implicit"), 1000: ("staged", "implicit")}
+REFERENCES = {10: ("time_step_check no", 50), 100: ("coupling implicit", 4)}  # parts of STEP
+
+
+@dataclass
+class Consolidation:
+    """Lists at equal intervals from the start."""
+    heights: tuple    # mean of the grains', m
+    pressures: tuple  # mean of the pores', Pa
+    networks: int     # that took the place of another
+    energies: tuple   # kinetic, J
+    forces: tuple     # vertical, of the fluid on the lower half of the grains, N
+    cpu: float        # s
+
+
+def consolidation(data, viscosity, step, words, time, instants=16, **variables):
+    """Runs in.consolidation; the time must be a multiple of `instants` steps."""
+    before = os.times().children_user
+    often = round(time / step / instants)
+    assert abs(often * instants * step / time - 1.0) < 1e-9
+    screen = must(liggghts("in.consolidation", data=data, viscosity=viscosity, dt=repr(step),
+                           steps=often * instants, often=often, words=words, **variables))
+    heights, pressures, networks, energies, forces = zip(
+        *(row[1:] for row in rows_of(screen, columns=6)))
+    return Consolidation(heights, pressures, round(networks[-1]), energies, forces,
+                         os.times().children_user - before)
+
+
+def weight(data):
+    """Of all grains under GRAVITY, N."""
+    rows = (line.split() for line in (SCENE / data).read_text().splitlines())
+    return GRAVITY * sum(DENSITY * math.pi / 6.0 * float(row[2])**3 for row in rows if len(row) == 7
+                         and float(row[3]) == DENSITY)
+
+
+def largest(values, others):
+    """Largest difference of two lists."""
+    return max(abs(a - b) for a, b in zip(values, others))
+
+
+def percent(value, digits=2):
+    return f"{100 * value:.{digits}f} %"
+
+
+def table():
+    data = sample("dense", CELLS)
+    limit, _ = printed(data, 1.0)
+    load = weight(data)
+    rows = Table("R", "coupling", "steps", "new networks", "pressure at the end / largest",
+                 "largest kinetic energy / work of the weight", "kinetic energy at the end / largest",
+                 "settlement off", "force of the fluid off")
+    reference = None
+    for ratio, couplings in RUNS.items():
+        viscosity, time = ratio * limit / STEP, ratio * STEPS * STEP
+        if ratio in REFERENCES:
+            words, parts = REFERENCES[ratio]
+            reference = consolidation(data, viscosity, STEP / parts, words, time, INSTANTS,
+                                      gravity=GRAVITY)
+        for coupling in couplings:
+            run = consolidation(data, viscosity, STEP, f"coupling {coupling}", time, INSTANTS,
+                                gravity=GRAVITY)
+            settled = run.heights[0] - run.heights[-1]
+            rows.row(ratio, coupling, ratio * STEPS, run.networks,
+                     percent(run.pressures[-1] / max(run.pressures), 1),
+                     f"{max(run.energies) / (load * settled):.1e}",
+                     f"{run.energies[-1] / max(run.energies):.1e}",
+                     percent(largest(run.heights, reference.heights) / settled),
+                     percent(largest(run.forces[1:], reference.forces[1:]) / load))
+    return rows
