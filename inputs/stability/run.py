@@ -18,6 +18,7 @@ import growth_rate
 import limits
 import maps
 import regions
+import speed
 import stiffness
 import thesis
 from tables import write_page
@@ -27,7 +28,7 @@ TABLES = {"limits": limits.table, "maps": maps.table,
           "thesis": thesis.table, "compressible": compressible.table,
           "conservation": compressible.conservation, "beyond": beyond.table,
           "accuracy": accuracy.table, "convergence": convergence.table,
-          "consolidations": consolidations.table, "costs": costs.table,
+          "consolidations": consolidations.table, "speed": speed.table, "costs": costs.table,
           "growth": growth_rate.table}
 
 
