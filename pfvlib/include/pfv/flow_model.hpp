@@ -31,7 +31,7 @@ struct FlowState {
   double strain = 0.0;                     ///< accumulated since the last triangulation
   std::int64_t retriangulations = 0;       ///< triangulations after the first
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
-  std::vector<double> lagged_pressures;    ///< p_old of implicit steps, likewise; empty without them
+  std::vector<double> lagged_pressures;    ///< p_old of long steps, likewise; empty without them
 };
 
 /// A face that moves freely along its axis: a piston. By default its velocity is prescribed.
