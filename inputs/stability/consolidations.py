@@ -12,7 +12,8 @@ STEP = 5.6e-4  # s: two thirds of the contact limit of these grains
 STEPS = 112  # times R; a multiple of INSTANTS for each R
 GRAVITY = 10.0  # m/s2: under more these few grains change places, each run at its own time
 INSTANTS = 160
-RUNS = {10: ("staged", "implicit"), 100: ("staged", "implicit"), 1000: ("staged", "implicit")}
+RUNS = {10: ("staged", "implicit"), 100: ("staged", "implicit"), 1000: ("staged", "implicit"),
+        10000: ("implicit",)}
 REFERENCES = {10: ("time_step_check no", 50), 100: ("coupling implicit", 4)}  # parts of STEP
 
 
