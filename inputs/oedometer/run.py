@@ -6,6 +6,7 @@
     run.py study               the tables of doc/oedometer.md: sizes, seeds, thresholds, times
 """
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -51,7 +52,7 @@ def solid_fraction(grains):
 def mean_radius(grains):
     mean_cube = (0.9**3 + 1.0 + 1.1**3) / 3.0
     volume = solid_fraction(grains) * SIDE**3 / grains
-    return (volume / (4.0 / 3.0 * 3.141592653589793 * mean_cube)) ** (1.0 / 3.0)
+    return (volume / (4.0 / 3.0 * math.pi * mean_cube)) ** (1.0 / 3.0)
 
 
 def viscosity_for(grains):
@@ -63,7 +64,12 @@ def viscous_limit(grains, viscosity):
     """Largest stable step of the explicit coupling: the papers' pi rho d^2/(1200 mu) times 0.25,
     measured for clusters of grains in dense packings. Fix pfv knows the limit of the sample."""
     diameter = 1.8 * mean_radius(grains)
-    return 0.25 * 3.141592653589793 * DENSITY * diameter**2 / (1200.0 * viscosity)
+    return 0.25 * math.pi * DENSITY * diameter**2 / (1200.0 * viscosity)
+
+
+def is_explicit(words):
+    """Whether the words of fix pfv leave it the coupling that its limit holds for."""
+    return not re.search(r"\bcoupling +(staged|implicit|auto)\b", words)
 
 
 def piston_mass(grains):
@@ -129,7 +135,9 @@ def plan(settings, sample):
     grains = settings["N"]
     viscosity = settings["VISCOSITY"] or viscosity_for(grains)
     limit = viscous_limit(grains, viscosity)
-    step = settings["TIME_STEP"] or min(0.8 * sample["contact_step"], 0.6 * limit)
+    explicit = is_explicit(settings["FIX"])
+    longest = 0.6 * limit if explicit else math.inf
+    step = settings["TIME_STEP"] or min(0.8 * sample["contact_step"], longest)
     if "K" not in sample:
         measure_permeability(settings, sample, viscosity)
     consolidation = sample["K"] / viscosity * sample["E_oed"]  # C_v, m2/s
@@ -139,7 +147,8 @@ def plan(settings, sample):
     first = -(-(sample["step"] + 500) // stride) * stride
     return {"viscosity": viscosity, "time_step": step, "C_v": consolidation, "unit": unit,
             "stride": stride, "every": every, "rest_to": first,
-            "steps": round(settings["END"] * unit / step), "viscous_limit_estimate": limit}
+            "steps": round(settings["END"] * unit / step), "viscous_limit_estimate": limit,
+            "explicit": explicit}
 
 
 def couple(settings, sample, planned):
