@@ -17,7 +17,8 @@ struct Batch {
   Lane normal[3], twice_area, side[3], angle[3], height[2], solid_angle[3][2];
 };
 
-#ifdef __x86_64__
+// The thread sanitizer's runtime is not there yet when the clone is chosen.
+#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)
 #define PFV_FOR_EACH_PROCESSOR \
   __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else

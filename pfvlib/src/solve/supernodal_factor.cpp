@@ -39,7 +39,7 @@ int eliminate_triangle(double* triangle, std::ptrdiff_t stride, int columns,
 
 }  // namespace
 
-void SupernodalFactor::add_blocks(const Supernodes& supernodes, int s) {
+void SupernodalFactor::add_blocks(const Supernodes& supernodes, int s, int room_behind) {
   const int width = supernodes.width(s), height = supernodes.height(s);
   for (int done = 0; done < width; done += block_width) {
     const FactorBlock block{supernodes.first_column[s] + done, std::min(block_width, width - done),
@@ -47,7 +47,7 @@ void SupernodalFactor::add_blocks(const Supernodes& supernodes, int s) {
                             static_cast<std::int64_t>(size_)};
     std::fill_n(block_of_.begin() + block.first_column, block.columns,
                 static_cast<int>(blocks_.size()));
-    size_ += static_cast<std::size_t>(block.columns) * block.height;
+    size_ += static_cast<std::size_t>(block.columns) * block.height + room_behind;
     tallest_ = std::max(tallest_, block.height);
     blocks_.push_back(block);
   }
@@ -64,12 +64,13 @@ void SupernodalFactor::analyze(const Supernodes& supernodes, const SubtreeCut& c
   blocks_.clear();
   size_ = 0;
   tallest_ = 0;
-  std::vector<char> ends_subtree(supernodes.count, 0);
-  for (const auto& [first, end] : cut.subtrees) ends_subtree[end - 1] = 1;
+  // What a kernel reads beyond a block must be no other thread's to write.
+  std::vector<int> room_behind(supernodes.count, 0);
+  for (const auto& [first, end] : cut.subtrees) room_behind[end - 1] = tile_rows;
+  for (const int s : cut.above) room_behind[s] = tile_rows;
   std::vector<int> first_block{0};
   for (int s = 0; s < supernodes.count; ++s) {
-    add_blocks(supernodes, s);
-    if (ends_subtree[s]) size_ += tile_rows;  // what a kernel reads beyond belongs to no other thread
+    add_blocks(supernodes, s, room_behind[s]);
     first_block.push_back(static_cast<int>(blocks_.size()));
   }
   size_ += tile_rows;

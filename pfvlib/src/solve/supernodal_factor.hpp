@@ -58,7 +58,7 @@ class SupernodalFactor {
     int begin, end;
   };
 
-  void add_blocks(const Supernodes& supernodes, int s);
+  void add_blocks(const Supernodes& supernodes, int s, int room_behind);
   const int* rows_of(const FactorBlock& block) const { return rows_ + block.first_row; }
   void begin_block(const FactorBlock& block, const SymmetricRows& matrix, double* diagonal,
                    WorkSpace& work);
