@@ -169,16 +169,7 @@ class Implicit(SettledTest):
 
     def test_continued_and_restarted_run_write_the_same_bytes(self):
         for words in ("coupling implicit", "coupling auto"):
-            fix = self.at_ratio(100, words)
-            self.liggghts(self.script(fix, "run 50\nwrite_restart file.restart\n" +
-                                      dump("a.dump") + "run 50\n"))
-            continued = read_thermo((self.folder / "log.liggghts").read_text())
-            self.liggghts(restarted_head() + WALLS + GRAVITY.format(40) + fix +
-                          f"timestep {STEP}\n" + THERMO + dump("b.dump") + "run 50\n")
-            restarted = read_thermo((self.folder / "log.liggghts").read_text())
-            self.assertEqual(restarted, continued[-len(restarted):])
-            self.assertEqual((self.folder / "a.dump").read_bytes(),
-                             (self.folder / "b.dump").read_bytes())
+            self.restarts_with_the_same_bytes(self.at_ratio(100, words))
 
     def test_two_ranks_give_the_forces_of_one_and_bear_the_piston(self):
         fix = self.at_ratio(100, "coupling implicit")

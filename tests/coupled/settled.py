@@ -3,7 +3,8 @@
 between six walls, their contacts at rest in the data file. In the tests gravity grows by a third and
 water leaves through bottom and top. R is the time step over the explicit limit that the fix reports.
 """
-from coupled import EDGE, FACES, CoupledTest, faces, packing, read_thermo, write_data
+from coupled import EDGE, FACES, CoupledTest, dump, faces, packing, read_thermo, restarted_head
+from coupled import write_data
 
 WALLS = "".join(
     f"fix w{face} all wall/gran model hooke/stiffness tangential history primitive type 1 "
@@ -50,3 +51,15 @@ class SettledTest(CoupledTest):
     def thermo(self, script, **options):
         self.liggghts(script, **options)
         return read_thermo((self.folder / "log.liggghts").read_text())
+
+    def restarts_with_the_same_bytes(self, fix):
+        """A run that goes on and one from its restart file: the same thermo rows and dumps."""
+        self.liggghts(self.script(fix, "run 50\nwrite_restart file.restart\n" +
+                                  dump("a.dump") + "run 50\n"))
+        continued = read_thermo((self.folder / "log.liggghts").read_text())
+        self.liggghts(restarted_head() + WALLS + GRAVITY.format(40) + fix +
+                      f"timestep {STEP}\n" + THERMO + dump("b.dump") + "run 50\n")
+        restarted = read_thermo((self.folder / "log.liggghts").read_text())
+        self.assertEqual(restarted, continued[-len(restarted):])
+        self.assertEqual((self.folder / "a.dump").read_bytes(),
+                         (self.folder / "b.dump").read_bytes())

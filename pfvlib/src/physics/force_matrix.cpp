@@ -46,6 +46,15 @@ void normalise(ViscousShares& shares, const PoreNetwork& network, int t) {
       shares[f][k] = is_wall(network.facet_vertices[f][k]) ? 0.0 : 1.0 / count;
 }
 
+/// The part of throat t's area that acts on corner k of its facet f.
+double share_of_corner(const Throats& throats, const ViscousShares& shares, ForceParts parts, int t,
+                       int f, int k) {
+  double area = 0.0;
+  if (parts.pressure) area += throats.facet_disc[f][k];
+  if (parts.viscous) area += throats.fluid_area[t] * shares[f][k];
+  return area;
+}
+
 /// Visits (row, throat, facet, corner, area) for every facet vertex that takes a force.
 template <class Visit>
 void for_each_share(const PoreNetwork& network, const Throats& throats,
@@ -54,9 +63,7 @@ void for_each_share(const PoreNetwork& network, const Throats& throats,
     for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
       for (int k = 0; k < 3; ++k) {
         const Vertex vertex = network.facet_vertices[f][k];
-        double area = 0.0;
-        if (parts.pressure) area += throats.facet_disc[f][k];
-        if (parts.viscous) area += throats.fluid_area[t] * shares[f][k];
+        const double area = share_of_corner(throats, shares, parts, t, f, k);
         if (area != 0.0)
           visit(is_wall(vertex) ? spheres + wall_number(vertex) : network.vertex_sphere[vertex],
                 t, f, k, area);
@@ -79,10 +86,8 @@ class RowMaker {
     row_.clear();
     for (const int* corner = begin; corner != end; ++corner) {
       const int f = *corner / 3, k = *corner % 3, t = throat_of_facet_[f];
-      double area = 0.0;
-      if (parts_.pressure) area += throats_.facet_disc[f][k];
-      if (parts_.viscous) area += throats_.fluid_area[t] * shares_[f][k];
-      const Eigen::Vector3d force = area * throats_.normal.col(t);
+      const Eigen::Vector3d force =
+          share_of_corner(throats_, shares_, parts_, t, f, k) * throats_.normal.col(t);
       take(network_.throat_pores[t][0], force);
       take(network_.throat_pores[t][1], -force);
     }
