@@ -9,7 +9,7 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 2.0;
+constexpr double format_number = 3.0;
 
 class Reader {
  public:
@@ -48,10 +48,11 @@ std::vector<double> pack(const PfvRestartRecord& record) {
     data.insert(data.end(), values.begin(), values.end());
   };
   append(record.last_positions);
-  data.push_back(static_cast<double>(record.flow.pore_pressures.size()));
-  append(record.flow.pore_pressures);
-  data.push_back(static_cast<double>(record.flow.lagged_pressures.size()));
-  append(record.flow.lagged_pressures);
+  for (const auto* pressures :
+       {&record.flow.pore_pressures, &record.flow.lag_level, &record.flow.lag_delayed}) {
+    data.push_back(static_cast<double>(pressures->size()));
+    append(*pressures);
+  }
   data.push_back(static_cast<double>(record.last_grains.tags.size()));
   append(record.last_grains.tags);
   append(record.last_grains.places);
@@ -76,8 +77,9 @@ PfvRestartRecord unpack(const char* bytes) {
   record.steps_since_flow = static_cast<int>(reader.next());
   record.elapsed = reader.next();
   for (double& position : record.last_positions) position = reader.next();
-  record.flow.pore_pressures = reader.list<double>(reader.count());
-  record.flow.lagged_pressures = reader.list<double>(reader.count());
+  for (auto* pressures :
+       {&record.flow.pore_pressures, &record.flow.lag_level, &record.flow.lag_delayed})
+    *pressures = reader.list<double>(reader.count());
   const std::size_t grains = reader.count();
   record.last_grains.tags = reader.list<std::int64_t>(grains);
   record.last_grains.places = reader.list<double>(3 * grains);

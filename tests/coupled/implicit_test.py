@@ -35,8 +35,8 @@ class Implicit(SettledTest):
             self.assertEqual({row["flow[9]"] for row in rows}, {1.0})
 
     def test_settlement_and_pressure_are_those_of_the_explicit_run_at_its_own_limit(self):
-        """Of first order in the time step: 0.7 % of the settlement and 2 % of the peak pressure were
-        measured, half of it at half of the step."""
+        """Of first order in the time step: 0.8 % of the settlement and 1 % of the peak pressure were
+        measured, half of it at half of the step; most of it are the dashpots, which act with v(n-1/2)."""
         implicit = self.thermo(self.script(self.at_ratio(20, "coupling implicit"),
                                            "thermo 10\nrun 120\n"))
         fine = self.thermo(self.script(self.at_ratio(20, ""), "thermo 250\nrun 3000\n",
@@ -46,7 +46,7 @@ class Implicit(SettledTest):
         peak = max(row["flow[7]"] for row in fine[1:])
         for row, other in list(zip(implicit, fine))[1:]:
             self.assertLess(abs(row["height"] - other["height"]), 0.01 * settled)
-            self.assertLess(abs(row["flow[7]"] - other["flow[7]"]), 0.03 * peak)
+            self.assertLess(abs(row["flow[7]"] - other["flow[7]"]), 0.015 * peak)
 
     # pistons
 
@@ -90,17 +90,20 @@ class Implicit(SettledTest):
                                                 "run 3\n"))[-1]["lid[3]"]
         self.assertGreater(abs(thrown), 100 * LOAD)
 
-    def test_water_leaves_as_fast_as_the_lid_comes_down_in_the_next_step(self):
-        """The outflow of an implicit step is that of the velocities which LIGGGHTS finds from its
-        forces: nothing but the lid changes the volume of the box."""
+    def test_water_leaves_as_fast_as_the_lid_comes_down(self):
+        """The outflow of an implicit step is that of velocities between those of the last step and those
+        which LIGGGHTS finds from its forces: nothing but the lid changes the volume of the box."""
+        ratio = 100
         limit = self.thermo(self.piston_script(1.0, 0.05, "", "run 0\n"))[0]["flow[6]"]
-        script = self.piston_script(100 * limit / STEP, 0.05, "coupling implicit",
+        script = self.piston_script(ratio * limit / STEP, 0.05, "coupling implicit",
                                     "thermo 1\nrun 40\nrun 40\n")
         rows = self.thermo(script.replace("float %.15g", "float %.17g"))
-        for at, (row, after) in enumerate(zip(rows, rows[1:])):
-            if row["Step"] == after["Step"] or at in (0, 41):  # setups: LIGGGHTS kicks half a step
-                continue
-            lost = (row["lid[12]"] - after["lid[12]"]) * EDGE**2 / STEP
+        setups = 0, 41  # of the two runs: LIGGGHTS kicks half a step
+        for at in set(range(1, len(rows) - 1)) - {one + by for one in setups for by in (-1, 0)}:
+            before, row, after = rows[at - 1:at + 2]
+            place = 1 - min(1, 30 * row["flow[6]"] / STEP) / 3
+            lost = ((1 - place) * (before["lid[12]"] - row["lid[12]"]) +
+                    place * (row["lid[12]"] - after["lid[12]"])) * EDGE**2 / STEP
             self.assertAlmostEqual((row["flow[2]"] - row["flow[1]"]) / lost, 1.0, delta=1e-6)
 
     # cost

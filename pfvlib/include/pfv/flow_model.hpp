@@ -31,7 +31,8 @@ struct FlowState {
   double strain = 0.0;                     ///< accumulated since the last triangulation
   std::int64_t retriangulations = 0;       ///< triangulations after the first
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
-  std::vector<double> lagged_pressures;    ///< p_old of long steps, likewise; empty without them
+  std::vector<double> lag_level;    ///< Pa, likewise: what long steps remember of the last pressures;
+  std::vector<double> lag_delayed;  ///< and of those before; both empty without long steps
 };
 
 /// A face that moves freely along its axis: a piston. By default its velocity is prescribed.
@@ -80,14 +81,15 @@ class FlowModel {
   /// Sub-stages of the last step.
   virtual int stages() const = 0;
 
-  /// The same advance at any dt for one solve with the denser matrix A = G + dt E M^-1 E^T: pressures
-  /// and the velocities v(n+3/2) that follow from all forces over dt are found together, so that
-  /// continuity holds exactly for the velocities with which the host moves the grains next. The forces
-  /// are E^T p + (S - E^T) p_old with the pressures of the last step, which beyond some tens of limits
-  /// p_old follows more slowly; a new network takes them over, and the first step finds its own by
-  /// four more solves. Stable where the contacts are; of first order in dt. What `grains` says of
-  /// masses and forces must be what the host integrates; A is factored anew when a mass or dt changes.
-  /// Throws InputError for a model that has no such step.
+  /// The same advance at any dt for one solve with the denser matrix A = G + theta dt E M^-1 E^T:
+  /// pressures and the velocities that follow from all forces are found together (theta method).
+  /// Continuity holds exactly for v(n+1/2) + theta (v(n+3/2) - v(n+1/2)), so that over many steps the
+  /// volumes of fluid and grains go together; theta is 2/3 up to 30 limits of the explicit coupling in a
+  /// step and goes to 1 beyond. The forces are E^T p + (S - E^T) q, where q is what the pressures of the
+  /// last steps lead one to expect (level and trend); beyond 30 limits q follows more slowly. A new
+  /// network takes them over, and the first step finds its own by four more solves. Stable where the
+  /// contacts are. What `grains` says of masses and forces must be what the host integrates; A is
+  /// factored anew when a mass or dt changes. Throws InputError for a model that has no such step.
   virtual const Forces& step_implicit(const Packing& packing, double dt, const GrainDynamics& grains);
   /// The same without advancing anything: the setup of a run.
   virtual const Forces& evaluate_implicit(const Packing& packing, double dt,

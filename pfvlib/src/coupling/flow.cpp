@@ -125,11 +125,11 @@ double Flow::time() const { return data_->time; }
 double Flow::strain() const { return data_->strain; }
 
 FlowState Flow::state() const {
-  const Eigen::VectorXd& p = data_->old_pressures;
-  const Eigen::VectorXd& lagged = data_->lagged;
+  const auto list = [](const Eigen::VectorXd& values) {
+    return std::vector<double>(values.data(), values.data() + values.size());
+  };
   return {data_->time, data_->strain, data_->retriangulations,
-          std::vector<double>(p.data(), p.data() + p.size()),
-          std::vector<double>(lagged.data(), lagged.data() + lagged.size())};
+          list(data_->old_pressures), list(data_->lag.level), list(data_->lag.delayed)};
 }
 
 void Flow::set_state(FlowState state) {
@@ -137,7 +137,8 @@ void Flow::set_state(FlowState state) {
   data_->strain = state.strain;
   data_->retriangulations = state.retriangulations;
   data_->pending_pressures = std::move(state.pore_pressures);
-  data_->pending_lagged = std::move(state.lagged_pressures);
+  data_->pending_level = std::move(state.lag_level);
+  data_->pending_delayed = std::move(state.lag_delayed);
 }
 
 const Forces& Flow::forces() const {

@@ -60,9 +60,9 @@ void FlowData::end_step(double step) {
   time += step;
   add_strain(step);
   if (force_lag.size() > 0)
-    lagged += relaxation * (relative_pressures - lagged);
+    lag.follow(relative_pressures);
   else
-    lagged.resize(0);
+    lag.forget();
   if (fluid.bulk_modulus) old_pressures = pressures;
 }
 
@@ -92,7 +92,7 @@ void FlowData::rebuild_now(const Packing& packing) {
   next.reset();
   stale = true;
   std::unique_ptr<LinearSolver> solver = built ? std::move(built->solver) : nullptr;
-  const bool carries_over = old_pressures.size() > 0 || lagged.size() > 0;
+  const bool carries_over = old_pressures.size() > 0 || !lag.empty();
   if (!carries_over) built.reset();  // its memory is the new one's
   auto fresh = derive_network(packing, build_settings(), {counts, seconds});
   fresh->former_solver = std::move(solver);
@@ -143,7 +143,8 @@ void FlowData::take_up(std::unique_ptr<BuiltNetwork> fresh) {
     pending.clear();
   };
   take_over(old_pressures, pending_pressures);
-  take_over(lagged, pending_lagged);
+  take_over(lag.level, pending_level);
+  take_over(lag.delayed, pending_delayed);
   if (fluid.bulk_modulus && old_pressures.size() == 0) old_pressures.setZero(pores);
   if (options.strain_measure == StrainMeasure::mean) volume_changes.setZero(pores);
   solution.setZero(built->unknowns.count);  // no trace of the old network in what follows

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/background_rebuild.hpp"
+#include "coupling/pressure_lag.hpp"
 #include "physics/chebyshev_stages.hpp"
 #include "pfv/flow.hpp"
 
@@ -69,15 +70,15 @@ struct FlowData {
   Eigen::VectorXd previous_pressures;    ///< the old pressures that the last solve started from, Pa
   Eigen::VectorXd relative_pressures;    ///< minus the reference, Pa
   Eigen::VectorXd pressures;             ///< Pa
-  Eigen::VectorXd lagged;     ///< relative pressures, relaxed over the last long steps, else empty
-  double relaxation = 1.0;    ///< part of the way that `lagged` goes towards the pressures of a step
+  PressureLag lag;            ///< of the last long steps; empty after a plain one
   Eigen::VectorXd force_lag;  ///< pressures that S acted with in the last call; empty: the present
   Eigen::VectorXd right_side, solution;  ///< of the unknowns
   Eigen::Matrix3Xd fluid_forces;         ///< S p: 3 x (active spheres + 6), N
   Forces forces;
   Box solved_box;  ///< the box may be another by the time that a balance is asked for
   std::vector<std::int64_t> packing_ids;
-  std::vector<double> pending_pressures, pending_lagged;  ///< from set_state, for the next network
+  /// From set_state, for the next network.
+  std::vector<double> pending_pressures, pending_level, pending_delayed;
 
   /// Only the explicit step needs no `grains`.
   const Forces& compute(const Packing& packing, double step, bool advance,
@@ -135,7 +136,6 @@ struct FlowData {
   void check_dynamics(const GrainDynamics& grains, const Packing& packing) const;
   Eigen::RowVectorXd yielding(const GrainDynamics& grains, double step) const;
   Eigen::Matrix3Xd held_forces(const GrainDynamics& grains) const;
-  static double relaxation_of(double ratio);
   void find_lag(const std::function<void(const Eigen::VectorXd&)>& solve);
   void run_recursion(const StagedMotion& staged, double at_time, const Eigen::VectorXd& old);
   void run_stages(const Packing& packing, double step, double at_time,

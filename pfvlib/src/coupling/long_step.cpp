@@ -4,20 +4,9 @@
 #include "coupling/phase_clock.hpp"
 #include "pfv/error.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace pfv {
-
-namespace {
-
-/// Up to this many limits of the explicit coupling in a step the correction (S - E^T) q follows the
-/// pressures at once. In a few motions the papers' S feeds energy to the grains, at a rate in proportion
-/// to 1/limit, so that at many limits a step it outgrows the contacts that hide it. Followed more slowly,
-/// the feeding is divided by what E^T damps in the meantime.
-constexpr double prompt_limits = 30.0;
-
-}  // namespace
 
 void FlowData::check_dynamics(const GrainDynamics& grains, const Packing& packing) const {
   if (!options.forces)
@@ -96,19 +85,18 @@ Eigen::Matrix3Xd FlowData::held_forces(const GrainDynamics& grains) const {
   return held;
 }
 
-/// What part of the way p_old goes to the pressures of a step of this many limits.
-double FlowData::relaxation_of(double ratio) { return std::min(1.0, prompt_limits / ratio); }
-
-/// Sets `lagged` where no earlier step has: `solve` finds the pressures of the step for given p_old.
+/// Lets the memory of the last pressures begin where there is none: `solve` finds those of the step for
+/// given ones in the correction.
 void FlowData::find_lag(const std::function<void(const Eigen::VectorXd&)>& solve) {
-  if (lagged.size() > 0) return;
+  if (!lag.empty()) return;
   constexpr int sweeps = 3;
   solve(Eigen::VectorXd::Zero(built->network.pores()));
-  lagged = relative_pressures;
+  Eigen::VectorXd found = relative_pressures;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    solve(lagged);
-    lagged += relaxation * (relative_pressures - lagged);
+    solve(found);
+    found += lag.relaxation * (relative_pressures - found);
   }
+  lag.start_from(found);
 }
 
 }  // namespace pfv

@@ -36,7 +36,7 @@ constexpr double allowed_change = 2.0;
 }  // namespace
 
 /// Integrates m dv/dt = held + S q + E^T (p(v) - q) over the step, where q goes from p_old to p(v) as
-/// far as `relaxation` lets it: the stages take that part of S which does not outgrow the contacts. The
+/// far as the lag lets it: the stages take that part of S which does not outgrow the contacts. The
 /// mean pressure, volume rates and motion are carried through the same recursion from zero; by linearity
 /// they belong to the mean force, so that forces, fluxes and volumes of the step balance exactly.
 void FlowData::run_recursion(const StagedMotion& staged, double at_time,
@@ -49,10 +49,10 @@ void FlowData::run_recursion(const StagedMotion& staged, double at_time,
   mean_motion.setZero(3, start.cols());
   Eigen::Matrix3Xd motion_before = mean_motion, first_change;
   const auto forces = [&](const Eigen::Matrix3Xd& motion) {
-    if (relaxation == 1.0)
+    if (lag.relaxation == 1.0)
       return Eigen::Matrix3Xd(staged.held + forces_with_faces(*built, relative_pressures) +
                               shear_forces_of(motion));
-    const Eigen::VectorXd followed = old + relaxation * (relative_pressures - old);
+    const Eigen::VectorXd followed = old + lag.relaxation * (relative_pressures - old);
     return Eigen::Matrix3Xd(staged.held + forces_with_faces(*built, followed) +
                             multiply(*built->energy_forces, relative_pressures - followed) +
                             shear_forces_of(motion));
@@ -101,8 +101,8 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
   if (chebyshev_stages(2.0 * step / limit).size() == 1)
     return solve_pressures(at_time, *built->solver);
 
-  relaxation = relaxation_of(step / limit);
-  const bool lags = relaxation < 1.0;
+  lag.relax(step / limit);
+  const bool lags = lag.relaxation < 1.0;
   make_force_matrices(*built, options, *team, counts);
   StagedMotion staged;
   staged.ratio = step / limit;
@@ -116,8 +116,9 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
   const auto solve = [&](const Eigen::VectorXd& old) { run_recursion(staged, at_time, old); };
   if (!lags) return solve({});
   find_lag(solve);
-  solve(lagged);
-  force_lag = lagged + relaxation * (relative_pressures - lagged);
+  const Eigen::VectorXd old = lag.expected();
+  solve(old);
+  force_lag = old + lag.relaxation * (relative_pressures - old);
 }
 
 void FlowData::refuse_feeding(const Eigen::Matrix3Xd& change, const Eigen::Matrix3Xd& explicit_one,
