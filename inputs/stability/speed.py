@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CPU of staged and implicit steps against the explicit coupling at its own limit: 4913 grains of
-6 mm and 15 MPa in 250 Pa s, the thesis' viscosity."""
+"""CPU and error of staged and implicit steps against the explicit coupling at its own limit: 4913
+grains of 6 mm and 15 MPa in 250 Pa s, the thesis' viscosity."""
 from consolidations import consolidation, largest, percent
 from samples import printed, sample
 from tables import Table
@@ -8,33 +8,33 @@ from tables import Table
 CELLS, STIFFNESS, VISCOSITY = 17, 4.5e4, 250.0  # along each edge; N/m; Pa s
 STEP = 2.4e-5  # s: half of the contact limit
 TIME = 240 * STEP  # s, in which networks are replaced
-EXPLICIT_STEPS = 1600
+PARTS = {"staged": (1, 2), "implicit": (1, 2, 4)}  # of STEP
 GRAVITIES = 40, 0.4  # m/s2: grains fall into place, or are pressed together where they lie
-FINE = 4  # parts of STEP in the run that the errors are taken against
+START = 16  # steps whose CPU, with that of the first network, is not counted
 
 
 def rows_of_gravity(rows, data, limit, gravity):
-    def run(step, words, time=TIME):
-        return consolidation(data, VISCOSITY, step, words, time, kn=STIFFNESS, gravity=gravity)
+    def run(steps, words, of=None):
+        return consolidation(data, VISCOSITY, TIME / steps, words, (of or steps) * TIME / steps,
+                             kn=STIFFNESS, gravity=gravity)
 
-    fine = run(STEP / FINE, "coupling staged")
-    settled, peak = fine.heights[0] - fine.heights[-1], max(map(abs, fine.forces))
-    explicit = "time_step_check no"
-    beginning = run(0.8 * limit, explicit, 16 * 0.8 * limit)
-    part = run(0.8 * limit, explicit, (16 + EXPLICIT_STEPS) * 0.8 * limit)
-    steps = round(TIME / (0.8 * limit))
-    explicit_cpu = (part.cpu - beginning.cpu) / EXPLICIT_STEPS * steps
-    rows.row(gravity, "explicit", 0.8, steps, "not counted", "", "", 1, 1)
-    for coupling in ("staged", "implicit"):
-        words = f"coupling {coupling}"
-        whole = run(STEP, words)
-        cpu = whole.cpu - run(STEP, words, 16 * STEP).cpu
-        long_steps = round(TIME / STEP)
-        rows.row(gravity, coupling, f"{STEP / limit:.0f}", long_steps, whole.networks,
-                 percent(largest(whole.heights, fine.heights) / settled),
-                 percent(largest(whole.forces[1:], fine.forces[1:]) / peak),
-                 f"{cpu / (long_steps - 16) * steps / explicit_cpu:.1f}",
-                 f"{explicit_cpu / cpu * (long_steps - 16) / long_steps:.1f}")
+    def stepping(whole, steps, words):
+        return (whole.cpu - run(steps, words, START).cpu) * steps / (steps - START)
+
+    steps = START * round(TIME / (0.8 * limit) / START)
+    explicit = run(steps, "time_step_check no")
+    explicit_cpu = stepping(explicit, steps, "time_step_check no")
+    settled, peak = explicit.heights[0] - explicit.heights[-1], max(map(abs, explicit.forces))
+    rows.row(gravity, "explicit", f"{TIME / steps / limit:.1f}", steps, explicit.networks, "", "", 1, 1)
+    for coupling, parts in PARTS.items():
+        for part in parts:
+            words, long_steps = f"coupling {coupling}", round(part * TIME / STEP)
+            whole = run(long_steps, words)
+            cpu = stepping(whole, long_steps, words)
+            rows.row(gravity, coupling, f"{STEP / part / limit:.0f}", long_steps, whole.networks,
+                     percent(largest(whole.heights, explicit.heights) / settled),
+                     percent(largest(whole.forces[1:], explicit.forces[1:]) / peak),
+                     f"{cpu / long_steps * steps / explicit_cpu:.1f}", f"{explicit_cpu / cpu:.1f}")
 
 
 def table():

@@ -48,8 +48,7 @@ struct Times {
   std::int64_t networks = 0;
 };
 
-Times run(int spheres, double dt, int steps, int lag) {
-  Column column(spheres);
+Times run(Column column, double dt, int steps, int lag) {
   Options options;
   options.rebuild_lag = lag;
   Flow flow(column.box, Fluid{}, options);
@@ -73,9 +72,9 @@ double median(std::vector<Times> runs, const Member& member) {
 }
 
 /// `n`: steps from network to network.
-void compare(int spheres, int n) {
+void compare(const Column& column, int n) {
   constexpr int repeats = 3, networks = 2;
-  const Column column(spheres);
+  const auto spheres = static_cast<int>(column.packing.radii.size());
   Options kept;
   kept.retriangulation_strain = std::numeric_limits<double>::infinity();
   Flow flow(column.box, Fluid{}, kept);
@@ -96,8 +95,8 @@ void compare(int spheres, int n) {
   const int steps = networks * n + lag + 5;  // until the last of them is in use either way
   std::vector<Times> within, beside;
   for (int i = 0; i < repeats; ++i) {
-    within.push_back(run(spheres, dt, steps, 0));
-    beside.push_back(run(spheres, dt, steps, lag));
+    within.push_back(run(column, dt, steps, 0));
+    beside.push_back(run(column, dt, steps, lag));
   }
   const double a = median(within, &Times::thread), b = median(beside, &Times::thread);
   std::printf("| %d | %d | %d | %lld, %lld | %.3g | %.3g | %.0f %% | %.3g | %.3g | %.3g |\n", spheres,
@@ -119,6 +118,8 @@ int main(int argc, char** argv) {
   std::puts("| spheres | steps a network | `rebuild_lag` | new networks: within, beside | stepping thread, "
             "ms a step: within | beside | saved | wall, ms a step: within | beside | of it waited |\n"
             "|--|--|--|--|--|--|--|--|--|--|");
-  for (const int spheres : sizes)
-    for (const int n : {100, 400}) compare(spheres, n);
+  for (const int spheres : sizes) {
+    const Column column(spheres);
+    for (const int n : {100, 400}) compare(column, n);
+  }
 }
