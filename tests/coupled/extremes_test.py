@@ -103,7 +103,7 @@ class FeedingFluid(CoupledTest):
                                  for n, sphere in enumerate(NESTED, 1)],
                    {n: (0.0, 0.0, -sphere[2]) for n, sphere in enumerate(NESTED, 1)})
         limit = self.rows(1.0, "", "run 0\n")[0]["flow[6]"]
-        self.viscosity = 29 * limit / self.STEP  # R = 29: stages with the whole of S
+        self.viscosity = 23 * limit / self.STEP  # R = 23: stages with the whole of S
 
     def script(self, viscosity, words, run):
         return (HEAD + f"fix flow all pfv viscosity {viscosity!r} "
@@ -121,12 +121,12 @@ class FeedingFluid(CoupledTest):
         self.assertIn(b'NumberOfPoints="1"', (self.folder / "seventh.vtu").read_bytes())
 
     def test_auto_goes_on_with_the_implicit_coupling(self):
-        energy = [row["KinEng"] for row in self.rows(self.viscosity, "coupling auto", "run 20\n")]
+        energy = [row["KinEng"] for row in self.rows(self.viscosity, "coupling auto", "run 10\n")]
         said = [line for line in self.screen.splitlines() if "implicit coupling from step" in line]
         self.assertEqual(len(said), 1, self.screen)
         self.assertIn("sphere 7", said[0])
         alone = [row["KinEng"] for row in
-                 self.rows(self.viscosity, "coupling implicit", "run 20\n")]
+                 self.rows(self.viscosity, "coupling implicit", "run 10\n")]
         for one, other in zip(energy, alone):
             self.assertAlmostEqual(one, other, delta=1e-2 * max(alone))
 

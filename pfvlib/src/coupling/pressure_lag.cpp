@@ -2,16 +2,18 @@
 #include "coupling/pressure_lag.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pfv {
 
-void PressureLag::relax(double limits) {
-  constexpr double prompt_limits = 30.0;
+void PressureLag::relax(double limits, double prompt_limits) {
+  constexpr double even_limits = 15.0;  // the trend is taken in full
   relaxation = std::min(1.0, prompt_limits / limits);
+  trend = std::pow(std::min(1.0, even_limits / limits), 2);
 }
 
 Eigen::VectorXd PressureLag::expected() const {
-  return level + relaxation * relaxation * (level - delayed);
+  return level + trend * (level - delayed);
 }
 
 void PressureLag::follow(const Eigen::VectorXd& pressures) {

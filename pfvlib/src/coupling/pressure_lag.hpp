@@ -13,14 +13,15 @@ struct PressureLag {
   Eigen::VectorXd level;    ///< of the pressures, smoothed; empty before the first long step
   Eigen::VectorXd delayed;  ///< the level, smoothed once more, at the step before; like `level`
   double relaxation = 1.0;  ///< part of the way that both go in a step, in (0, 1]
+  double trend = 1.0;       ///< part of the trend that is expected to go on, in (0, 1]
 
-  /// Up to 30 limits of the explicit coupling in a step the correction follows at once. In a few motions
-  /// the papers' S feeds energy to the grains, at a rate in proportion to 1/limit, so that at many
-  /// limits a step it outgrows the contacts that hide it. Followed more slowly, the feeding is divided
-  /// by what E^T damps in the meantime. `limits`: the step over the limit.
-  void relax(double limits);
-  /// Of the step to come. The trend of pressures that are followed slowly is that of motions which feed,
-  /// too, so that less of it is taken: with all of it a hundred limits a step shake 125 grains.
+  /// Up to `prompt_limits` limits of the explicit coupling in a step (`limits`: the step over the limit)
+  /// the correction follows at once. In a few motions the papers' S feeds energy to the grains, at a rate
+  /// in proportion to 1/limit, so that at many limits a step it outgrows the contacts that hide it.
+  /// Behind by some steps, it acts on them like an added mass and the feeding is slower. All other
+  /// motions feel that mass, too: the trend takes it away, where there is little feeding to be feared.
+  void relax(double limits, double prompt_limits);
+  /// Of the step to come.
   Eigen::VectorXd expected() const;
   /// Takes in the pressures of the step that has ended.
   void follow(const Eigen::VectorXd& pressures);

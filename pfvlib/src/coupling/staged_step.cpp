@@ -33,6 +33,9 @@ Eigen::VectorXd energies(const Eigen::Matrix3Xd& change, const Eigen::RowVectorX
 /// more than three in one step, and pressures after them.
 constexpr double allowed_change = 2.0;
 
+/// As in the implicit step, but fewer: the stages follow their own pressures besides the last ones.
+constexpr double prompt_limits = 24.0;
+
 }  // namespace
 
 /// Integrates m dv/dt = held + S q + E^T (p(v) - q) over the step, where q goes from p_old to p(v) as
@@ -101,7 +104,7 @@ void FlowData::run_stages(const Packing& packing, double step, double at_time,
   if (chebyshev_stages(2.0 * step / limit).size() == 1)
     return solve_pressures(at_time, *built->solver);
 
-  lag.relax(step / limit);
+  lag.relax(step / limit, prompt_limits);
   const bool lags = lag.relaxation < 1.0;
   make_force_matrices(*built, options, *team, counts);
   StagedMotion staged;
