@@ -86,7 +86,7 @@ class FlowModel {
   /// Continuity holds exactly for v(n+1/2) + theta (v(n+3/2) - v(n+1/2)), so that over many steps the
   /// volumes of fluid and grains go together; theta is 2/3 up to 30 limits of the explicit coupling in a
   /// step and goes to 1 beyond. The forces are E^T p + (S - E^T) q, where q is what the pressures of the
-  /// last steps lead one to expect (level and trend); beyond 15 limits q takes less of the trend, beyond
+  /// last steps lead one to expect (level and trend); beyond 20 limits q takes less of the trend, beyond
   /// 30 it follows more slowly. A new network takes them over, and the first step finds its own by four more solves. Stable where the
   /// contacts are. What `grains` says of masses and forces must be what the host integrates; A is
   /// factored anew when a mass or dt changes. Throws InputError for a model that has no such step.

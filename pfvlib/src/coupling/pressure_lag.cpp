@@ -7,9 +7,9 @@
 namespace pfv {
 
 void PressureLag::relax(double limits, double prompt_limits) {
-  constexpr double even_limits = 15.0;  // the trend is taken in full
+  constexpr double even_limits = 20.0;  // up to which the trend is taken in full
   relaxation = std::min(1.0, prompt_limits / limits);
-  trend = std::pow(std::min(1.0, even_limits / limits), 2);
+  trend = std::pow(std::min(1.0, even_limits / limits), 4);
 }
 
 Eigen::VectorXd PressureLag::expected() const {
