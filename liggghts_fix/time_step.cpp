@@ -78,6 +78,8 @@ void FixPfv::choose_coupling() {
                            : unknown;
   if (!(ratio > 1.0))
     chosen_ = PfvCoupling::explicit_forces;
+  else if (settings_.options.shear_viscous)  // which have no implicit step
+    chosen_ = PfvCoupling::staged;
   else
     chosen_ = staged_failed_ ? PfvCoupling::implicit
                              : cheaper(ratio, steps, grains_.masses().size());

@@ -120,8 +120,10 @@ class Implicit(SettledTest):
         self.assertEqual(six[1], 2)  # G for the limit, and A
 
     def test_auto_is_implicit_where_that_is_cheaper(self):
-        """Many steps between two networks and a large R; staged where R is small."""
+        """Many steps between two networks and a large R; staged where R is small, and with shear viscous
+        forces, which the implicit coupling does not have."""
         for ratio, words, wanted in ((1000, "retriangulate 10", "coupling implicit"),
+                                     (1000, "retriangulate 10 shear_viscous yes", "coupling staged"),
                                      (4, "retriangulate 10", "coupling staged")):
             dumps = []
             for coupling in (wanted, "coupling auto"):
