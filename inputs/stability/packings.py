@@ -38,6 +38,21 @@ def read_csv(path):
     return np.loadtxt(path, delimiter=",", skiprows=1)[:, 1:5]
 
 
+def rest_of(name, count):
+    """Rows x, y, z, radius of post/NAME.rest."""
+    rows = (POST / f"{name}.rest").read_text().splitlines()[9:]
+    if len(rows) != count:
+        raise SystemExit(f"stability: {count - len(rows)} grains of {name} left the box")
+    return np.array([row.split()[1:] for row in rows], dtype=float)
+
+
+def write_packing(name, grains):
+    """post/NAME.csv and post/NAME.data."""
+    write_csv(POST / f"{name}.csv", grains.tolist())
+    # so slow that no grain moves by a part of its contact overlaps during a run
+    write_data(POST / f"{name}.data", grains.tolist(), 1e-4, random.Random(1))
+
+
 @functools.cache
 def packed(ratio, count, solid, gap=0.0, seed=1):
     """Name of a packing whose diameters are spread evenly over 1 to `ratio` times the smallest: grains at
@@ -54,16 +69,25 @@ def packed(ratio, count, solid, gap=0.0, seed=1):
     step = 0.2 * math.sqrt(mass / STIFFNESS)
     must(liggghts("in.pack", data=data, dt=step, steps=5000, rest=25000, drag=0.02 * mass / step,
                   out=f"post/{name}.rest"))
-    rows = (POST / f"{name}.rest").read_text().splitlines()[9:]
-    if len(rows) != count:
-        raise SystemExit(f"stability: {count - len(rows)} grains of {name} left the box")
-    at_rest = np.array([row.split()[1:] for row in rows], dtype=float)
+    at_rest = rest_of(name, count)
     at_rest[:, 3] /= 1 + gap
-    at_rest = at_rest.tolist()
-    write_csv(POST / f"{name}.csv", at_rest)
-    # so slow that no grain moves by a part of its contact overlaps during a run
-    write_data(data, at_rest, 1e-4, random.Random(1))
+    write_packing(name, at_rest)
     return name
+
+
+@functools.cache
+def rested(ratio, count, solid, steps=100000):
+    """Name of `packed` after many more dry steps with strong dashpots: with size ratios of 10 and more
+    grains there still give way."""
+    name = packed(ratio, count, solid)
+    label = f"rested_{name}"
+    report, _ = time_step(POST / f"{name}.csv", "--spheres", 1, "--contact-stiffness", STIFFNESS)
+    step = 0.2 * report["contact_limit"]
+    lightest = DENSITY * 4 / 3 * math.pi * read_csv(POST / f"{name}.csv")[:, 3].min()**3
+    must(liggghts("in.settle", data=POST / f"{name}.data", out=f"post/{label}.rest", dt=repr(step),
+                  steps=steps, drag=0.05 * lightest / step, gamman=3000))
+    write_packing(label, rest_of(label, count))
+    return label
 
 
 def overlaps(grains):

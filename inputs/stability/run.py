@@ -16,6 +16,7 @@ import convergence
 import costs
 import growth_rate
 import limits
+import long_steps
 import maps
 import regions
 import speed
@@ -29,7 +30,9 @@ TABLES = {"limits": limits.table, "maps": maps.table,
           "conservation": compressible.conservation, "beyond": beyond.table,
           "accuracy": accuracy.table, "convergence": convergence.table,
           "consolidations": consolidations.table, "speed": speed.table, "costs": costs.table,
-          "growth": growth_rate.table}
+          "growth": growth_rate.table, "long_steps": long_steps.table,
+          "floating": long_steps.floating, "shaken": long_steps.shaken,
+          "long_lids": long_steps.lids}
 
 
 def main(words):

@@ -73,18 +73,23 @@ def rows_of(screen, columns=4):
     return rows
 
 
-def growth(data, viscosity, step, steps, words, script="in.stability", **variables):
-    """Kinetic energy at the end of a run over that at its beginning; infinite where it broke off."""
+def energies(data, viscosity, step, steps, words, script="in.stability", **variables):
+    """Kinetic energies of a run at eleven instants, as parts of the first; one infinite entry where it broke
+    off."""
     ok, screen = liggghts(script, data=data, viscosity=viscosity, dt=repr(step), steps=steps,
                           words=words, **variables)
     rows = rows_of(screen)
     if not rows or rows[0][0] != 0:
         if "went out of control" in screen:  # refused at once
-            return math.inf
+            return [math.inf]
         must((False, screen))
-    energies = [row[1] for row in rows]
-    broken = not ok or not all(math.isfinite(energy) for energy in energies)
-    return math.inf if broken else energies[-1] / energies[0]
+    found = [row[1] / rows[0][1] for row in rows]
+    return found if ok and all(map(math.isfinite, found)) else [math.inf]
+
+
+def growth(data, viscosity, step, steps, words, script="in.stability", **variables):
+    """Kinetic energy at the end of a run over that at its beginning; infinite where it broke off."""
+    return energies(data, viscosity, step, steps, words, script, **variables)[-1]
 
 
 def printed(data, viscosity):

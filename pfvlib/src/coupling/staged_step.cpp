@@ -88,12 +88,14 @@ void FlowData::run_recursion(const StagedMotion& staged, double at_time,
 
 /// The limit with E^T, or with S where that is shorter: what lies between them is within both.
 double FlowData::stage_limit_near(double limit) {
-  constexpr double farthest = 100.0;  // ten times the stages; in beds of grains they are 1.1 apart
+  // ten times the stages; they are 1.1 apart in beds of like grains, 14 at a size ratio of 20
+  constexpr double farthest = 100.0;
   if (limit > farthest * stage_limit())
     throw UnstableStep("a staged step this long needs the transpose of the volume rates for S, whose "
                        "drag is more than " + std::to_string(static_cast<int>(farthest)) + " times as "
-                       "strong here: spheres overlap by most of their radii; take the implicit "
-                       "coupling or a much shorter step");
+                       "strong here: spheres overlap by most of their radii, or touch nothing in pores "
+                       "of spheres many times larger; take the implicit coupling, shear viscous "
+                       "forces or a much shorter step");
   return std::min(limit, stage_limit());
 }
 
