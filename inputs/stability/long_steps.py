@@ -24,10 +24,10 @@ STEPS = 1000
 PARTS = {"a sixth": 1 / 6, "half": 1 / 2}  # of the contacts' limit
 STAGED, IMPLICIT = "coupling staged", "coupling implicit"
 SHEAR = " shear_viscous yes"
-RATIOS = [10, 100, 1000, 10000]  # R, time step over the printed limit
-TRIED = {STAGED: RATIOS[:3], IMPLICIT: RATIOS, STAGED + SHEAR: RATIOS[:3]}
+RATIOS = [10, 30, 100, 1000, 10000]  # R, time step over the printed limit
+TRIED = {STAGED: RATIOS[:4], IMPLICIT: RATIOS, STAGED + SHEAR: RATIOS[:4]}
 SIZES = (1.2, 3, 5, 10, 20)
-STIFFNESS_RATIOS = (10, 1000)
+STIFFNESS_RATIOS = (10, 30, 1000)
 COUNTS, COUNT_RATIO = {1000: 0.62, 5000: 0.64}, 100  # share of the grains' volume: in contact
 LID_MASSES = [10.0**k for k in range(-4, 2)]  # kg
 DASHPOT = 500.0  # 1/s, of in.grains
@@ -164,8 +164,8 @@ def is_free(grains, k):
 
 
 def lid_limit(mass, touching):
-    """Longest stable step (s) of a dry lid on grains of these masses, held: (dt omega)^2 / 2 + dt c / m = 2, with
-    the dashpots' force at the velocities of the last step and, against a mesh, the mass of the grain."""
+    """Longest stable step (s) of a dry lid on grains of these masses, held: (dt omega)^2 / 2 + dt c / m = 2,
+    with the dashpots' force at the velocities of the last step and, against a mesh, the grain's mass."""
     spring = len(touching) * STIFFNESS / mass
     dashpot = DASHPOT * sum(touching) / mass
     return (math.sqrt(dashpot**2 + 4 * spring) - dashpot) / spring
