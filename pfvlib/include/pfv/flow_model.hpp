@@ -31,8 +31,8 @@ struct FlowState {
   double strain = 0.0;                     ///< accumulated since the last triangulation
   std::int64_t retriangulations = 0;       ///< triangulations after the first
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
-  std::vector<double> lag_level;    ///< Pa, likewise: what long steps remember of the last pressures;
-  std::vector<double> lag_delayed;  ///< and of those before; both empty without long steps
+  std::vector<double> lag_level;           ///< Pa, likewise: what long steps remember of the last
+  std::vector<double> lag_delayed;         ///< pressures and of those before; empty without long steps
 };
 
 /// A face that moves freely along its axis: a piston. By default its velocity is prescribed.
@@ -87,9 +87,10 @@ class FlowModel {
   /// volumes of fluid and grains go together; theta is 2/3 up to 30 limits of the explicit coupling in a
   /// step and goes to 1 beyond. The forces are E^T p + (S - E^T) q, where q is what the pressures of the
   /// last steps lead one to expect (level and trend); beyond 20 limits q takes less of the trend, beyond
-  /// 30 it follows more slowly. A new network takes them over, and the first step finds its own by four more solves. Stable where the
-  /// contacts are. What `grains` says of masses and forces must be what the host integrates; A is
-  /// factored anew when a mass or dt changes. Throws InputError for a model that has no such step.
+  /// 30 it follows more slowly. A new network takes them over, and the first step finds its own by
+  /// four more solves. Stable where the contacts are. What `grains` says of masses and forces must be
+  /// what the host integrates; A is factored anew when a mass or dt changes. Throws InputError for a
+  /// model that has no such step.
   virtual const Forces& step_implicit(const Packing& packing, double dt, const GrainDynamics& grains);
   /// The same without advancing anything: the setup of a run.
   virtual const Forces& evaluate_implicit(const Packing& packing, double dt,

@@ -7,7 +7,8 @@ namespace pfv {
 
 namespace {
 
-/// Where 500 grains of size ratio 3, at a sixth of their contact limit, stay at rest at any number of limits.
+/// With these 500 grains of size ratio 3, at a sixth of their contact limit, stay at rest in steps of any
+/// number of limits; followed at once, the pressures shake them at 30.
 constexpr double prompt_limits = 30.0;
 
 /// How far into the step, from 1/2 to 1, the velocities lie that the pressures belong to. Those of its end,
