@@ -188,9 +188,9 @@ imposed difference, those of forces of the largest force.
 * The Cholesky factor is not equilibrated: a diagonal scaling changes neither its pivots' relative errors nor,
   in the table, anything that would need mending.
 * Where a group of pores holds together by throats 1e10 times as wide as its ways out, one solve loses ten
-  digits of the group's pressure (fuzz cases 5046 and 8825 of seed 1: 1e-8 of the imposed difference).
+  digits of the group's pressure (fuzz cases 5046, 8825 and 8961 of seed 1: 5e-9 to 1e-8 of the imposed difference).
   The first solve on each factor finds out, by a second one for what continuity lacks; where that changes
-  pressures by more than 1e-8, every solve on the factor is refined so until it changes them by less than
+  pressures by more than 1e-9, every solve on the factor is refined so until it changes them by less than
   1e-10, and where that does not converge the two throats are named that lie too far apart. (Dense packings
   of 20 000 spheres and more lose up to 2e-10, which is not worth a second solve at each step.)
 """

@@ -70,7 +70,7 @@ Eigen::VectorXd pressure_correction(const FlowData& flow) {
 
 void FlowData::refine_pressures() {
   // A dense packing of 40 000 spheres loses 1.5e-10: that is not worth a second solve at each step.
-  constexpr double lost = 1e-8, exact = 1e-10, hopeless = 1e-6;
+  constexpr double lost = 1e-9, exact = 1e-10, hopeless = 1e-6;
   constexpr int sweeps = 4;
   if (built->unknowns.count == 0 || is_iterative(options.solver) ||
       options.precision == Precision::mixed || !built->loses_digits.value_or(true))
