@@ -92,6 +92,7 @@ class FixPfv : public Fix {
   void take_implicit(bool advance);
   double estimated_limit() const;
   void check_time_step();
+  void warn_of_small_grains(double limit);
 
   // outputs
   double quantity(int n);

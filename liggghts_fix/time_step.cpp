@@ -145,6 +145,28 @@ double FixPfv::estimated_limit() const {
   return smallest;
 }
 
+/// Small grains that touch nothing in the pores of large ones: their own motion drives some of them on,
+/// the faster ones by e in 1000 limits of time, from a size ratio of 5 on (doc/stability.md, floating).
+void FixPfv::warn_of_small_grains(double limit) {
+  constexpr double safe_ratio = 4.0, limits_of_growth = 1000.0;
+  if (settings_.grid || settings_.options.shear_viscous) return;
+  const Eigen::VectorXd& masses = grains_.masses();
+  const auto radii = grains_.packing().radii;
+  double smallest = std::numeric_limits<double>::infinity(), largest = 0.0;
+  for (Eigen::Index k = 0; k < masses.size(); ++k) {
+    largest = std::max(largest, radii[k]);
+    if (std::isfinite(masses[k])) smallest = std::min(smallest, radii[k]);
+  }
+  if (!(largest > safe_ratio * smallest)) return;
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "Fix pfv (id %s): the smallest free grain is %.3g times smaller than the largest grain; "
+                "the fluid shakes small grains that touch nothing, at any time step, within some "
+                "%.2g s. `shear_viscous yes` brakes them (with `coupling explicit` or `staged`)",
+                id, largest / smallest, limits_of_growth * limit);
+  error->warning(FLERR, text);
+}
+
 /// Says where the time step stands, at the beginning of a run; rank 0.
 void FixPfv::check_time_step() {
   if (!settings_.time_step_check && !needs_forces()) return;
@@ -160,6 +182,7 @@ void FixPfv::check_time_step() {
                 id, limit, estimated_limit(), flow_step(), ratio, static_cast<int>(pistons),
                 name_of(chosen_), flow_->stages());
   print(text);
+  warn_of_small_grains(limit);
   if (needs_forces() || ratio <= settings_.safety) return;
   std::snprintf(text, sizeof text,
                 "Fix pfv (id %s): the flow step of %.4g s is %.4g times the limit of the explicit "
