@@ -268,6 +268,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "coupling") settings.coupling = words.coupling();
   else if (keyword == "time_step_check") settings.time_step_check = words.yes_or_no();
   else if (keyword == "shear_viscous") settings.options.shear_viscous = words.yes_or_no();
+  else if (keyword == "volume_rates")
+    settings.options.volume_rates = pfv::volume_rates_named(words.word("the name"));
   else if (keyword == "conductance")
     settings.options.conductance = pfv::conductance_law_named(words.word("the law's name"));
   else if (keyword == "solver")
@@ -288,7 +290,7 @@ void parse_keyword(Words& words, PfvSettings& settings) {
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
                           "region, point, pressure_profile, retriangulate, rebuild_lag, "
                           "couple_every, coupling, "
-                          "time_step_check, conductance, shear_viscous, solver, tolerance, "
+                          "time_step_check, conductance, volume_rates, shear_viscous, solver, tolerance, "
                           "precision, threads, output, profile, flux_profile, sensors and "
                           "culprits");
 }
@@ -305,9 +307,18 @@ void apply_profiles(PfvSettings& settings) {
   }
 }
 
-void check_all(const PfvSettings& settings) {
+/// The papers' volume rates feed some motions, which long steps outgrow.
+void check_geometric(PfvSettings& settings) {
+  if (settings.coupling == PfvCoupling::automatic) settings.coupling = PfvCoupling::explicit_forces;
+  if (settings.coupling != PfvCoupling::explicit_forces)
+    throw pfv::InputError("`volume_rates geometric` goes with `coupling explicit` alone; take "
+                          "`volume_rates reciprocal`, the default");
+}
+
+void check_all(PfvSettings& settings) {
   pfv::check(settings.fluid);
   pfv::check(settings.options);
+  if (settings.options.volume_rates == pfv::VolumeRates::geometric) check_geometric(settings);
   if (settings.options.rebuild_lag > 0 && (settings.coupling == PfvCoupling::implicit ||
                                            settings.coupling == PfvCoupling::automatic))
     throw pfv::InputError("rebuild_lag goes with `coupling explicit` and `coupling staged`: implicit "

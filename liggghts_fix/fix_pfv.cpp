@@ -38,7 +38,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   extscalar = extvector = 0;
   global_freq = 1;
   peratom_flag = 1;
-  size_peratom_cols = 4;
+  size_peratom_cols = PfvGrainExchange::returned_width;
   peratom_freq = 1;
   restart_global = 1;
 }
@@ -47,9 +47,11 @@ int FixPfv::setmask() { return PRE_FORCE | POST_FORCE | POST_RUN; }
 
 void FixPfv::post_create() {
   const std::string property_id = std::string(id) + "_prop";
-  const char* words[] = {property_id.c_str(), group->names[igroup], "property/atom",
-                         property_id.c_str(), "vector", "no", "no", "no", "0.", "0.", "0.", "0."};
-  per_atom_ = modify->add_fix_property_atom(12, const_cast<char**>(words), style);
+  std::vector<const char*> words{property_id.c_str(), group->names[igroup], "property/atom",
+                                 property_id.c_str(), "vector", "no", "no", "no"};
+  words.insert(words.end(), PfvGrainExchange::returned_width, "0.");
+  per_atom_ = modify->add_fix_property_atom(static_cast<int>(words.size()),
+                                            const_cast<char**>(words.data()), style);
   array_atom = per_atom_->array_atom;
 }
 
@@ -319,7 +321,10 @@ void FixPfv::apply_forces() {
   array_atom = per_atom_->array_atom;  // reallocated when the number of atoms grows
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit)
-      for (int k = 0; k < 3; ++k) atom->f[i][k] += array_atom[i][k];
+      for (int k = 0; k < 3; ++k) {
+        atom->f[i][k] += array_atom[i][k];
+        atom->torque[i][k] += array_atom[i][4 + k];
+      }
 }
 
 void FixPfv::push_meshes() {

@@ -92,7 +92,6 @@ class FixPfv : public Fix {
   void take_implicit(bool advance);
   double estimated_limit() const;
   void check_time_step();
-  void warn_of_small_grains(double limit);
 
   // outputs
   double quantity(int n);
@@ -121,7 +120,6 @@ class FixPfv : public Fix {
   std::optional<pfv::Report> report_;
   PfvSnapshot last_grains_;
   PfvCoupling chosen_ = PfvCoupling::explicit_forces;
-  bool staged_failed_ = false;     // in this run
   double strain_of_a_step_ = 0.0;  // of the last one, 0 before the first of a run
   std::int64_t chosen_for_ = 0;  // retriangulations when the coupling was chosen
   bool cited_ = false;

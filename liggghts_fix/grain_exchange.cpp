@@ -13,8 +13,8 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr int plain_width = 9;     // tag, place, velocity, radius, mass
-constexpr int returned_width = 4;  // force, pressure
+constexpr int plain_width = 12;  // tag, place, velocity, radius, mass, spin
+constexpr int loads_width = 7;   // force, torque, inertia
 
 std::vector<int> times(const std::vector<int>& counts, int width) {
   std::vector<int> scaled(counts);
@@ -27,16 +27,22 @@ std::vector<int> times(const std::vector<int>& counts, int width) {
 void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces) {
   constexpr double immovable = std::numeric_limits<double>::infinity();
   groupbit_ = groups.flow;
-  sent_width_ = with_forces ? plain_width + 3 : plain_width;
+  sent_width_ = with_forces ? plain_width + loads_width : plain_width;
   local_.clear();
   for (int i = 0; i < atom->nlocal; ++i) {
     const int mask = atom->mask[i];
     if (!(mask & groupbit_)) continue;
-    const double *x = atom->x[i], *v = atom->v[i];
+    const double *x = atom->x[i], *v = atom->v[i], *spin = atom->omega[i];
     local_.insert(local_.end(), {static_cast<double>(atom->tag[i]), x[0], x[1], x[2], v[0], v[1],
                                  v[2], atom->radius[i],
-                                 groups.free(mask) ? atom->rmass[i] : immovable});
-    if (with_forces) local_.insert(local_.end(), atom->f[i], atom->f[i] + 3);
+                                 groups.free(mask) ? atom->rmass[i] : immovable, spin[0], spin[1],
+                                 spin[2]});
+    if (!with_forces) continue;
+    local_.insert(local_.end(), atom->f[i], atom->f[i] + 3);
+    local_.insert(local_.end(), atom->torque[i], atom->torque[i] + 3);
+    local_.push_back(groups.free_to_turn(mask)
+                         ? 0.4 * atom->rmass[i] * atom->radius[i] * atom->radius[i]
+                         : immovable);
   }
   local_count_ = static_cast<int>(local_.size()) / sent_width_;
 
@@ -70,8 +76,12 @@ void PfvGrainExchange::sort_by_tag() {
   grains_.positions.resize(3, count);
   grains_.velocities.resize(3, count);
   grains_.radii.resize(count);
+  grains_.angular_velocities.resize(3, count);
   masses_.resize(count);
-  forces_.resize(3, sent_width_ > plain_width ? count : 0);
+  const bool with_forces = sent_width_ > plain_width;
+  forces_.resize(3, with_forces ? count : 0);
+  torques_.resize(3, with_forces ? count : 0);
+  inertias_.resize(with_forces ? count : 0);
   for (int k = 0; k < count; ++k) {
     const double* row = &received_[std::size_t(sent_width_) * order_[k]];
     grains_.ids[k] = static_cast<std::int64_t>(row[0]);
@@ -79,7 +89,11 @@ void PfvGrainExchange::sort_by_tag() {
     grains_.velocities.col(k) << row[4], row[5], row[6];
     grains_.radii[k] = row[7];
     masses_[k] = row[8];
-    if (forces_.cols() > 0) forces_.col(k) << row[9], row[10], row[11];
+    grains_.angular_velocities.col(k) << row[9], row[10], row[11];
+    if (!with_forces) continue;
+    forces_.col(k) << row[12], row[13], row[14];
+    torques_.col(k) << row[15], row[16], row[17];
+    inertias_[k] = row[18];
   }
 }
 
@@ -108,6 +122,7 @@ void PfvGrainExchange::scatter(const pfv::Forces& forces, double** per_atom) {
       double* row = &all[std::size_t(returned_width) * order_[k]];
       Eigen::Map<Eigen::Vector3d>{row} = forces.total.col(k);
       row[3] = forces.sphere_pressure[k];
+      if (forces.torque.cols() > 0) Eigen::Map<Eigen::Vector3d>{row + 4} = forces.torque.col(k);
     }
   }
   std::vector<double> mine(std::size_t(returned_width) * local_count_);

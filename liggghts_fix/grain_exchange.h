@@ -24,8 +24,8 @@ class PfvGrainExchange : protected Pointers {
  public:
   explicit PfvGrainExchange(class LAMMPS* lmp) : Pointers(lmp) {}
 
-  /// Collects tag, place, velocity, radius and mass of the flow's grains on rank 0, on demand with
-  /// the force that acts on them so far; collective. They are sorted by tag there, so that the flow
+  /// Collects tag, place, velocity, radius, mass and spin of the flow's grains on rank 0, on demand with
+  /// the force and torque that act on them so far; collective. They are sorted by tag there, so that the flow
   /// sees the same packing however LIGGGHTS has spread and sorted its atoms.
   void gather(const PfvGroups& groups, bool with_forces);
 
@@ -38,13 +38,18 @@ class PfvGrainExchange : protected Pointers {
   const Eigen::VectorXd& masses() const { return masses_; }
   /// Masses and forces of the last gathering with forces, and these pistons; rank 0.
   pfv::GrainDynamics dynamics(const std::array<pfv::Piston, 6>& pistons) const {
-    return {{masses_.data(), masses_.size()}, {forces_.data(), 3, forces_.cols()}, pistons};
+    return {{masses_.data(), masses_.size()},
+            {forces_.data(), 3, forces_.cols()},
+            pistons,
+            {torques_.data(), 3, torques_.cols()},
+            {inertias_.data(), inertias_.size()}};
   }
   PfvSnapshot snapshot() const;                              ///< rank 0
 
-  /// Hands force (columns 0-2, N) and pressure (3, Pa) to the atoms as they were gathered and zeros
-  /// to those outside the group; collective, with no change of atoms since `gather`.
+  /// Hands force (columns 0-2, N), pressure (3, Pa) and torque (4-6, N m) to the atoms as they were gathered
+  /// and zeros to those outside the group; collective, with no change of atoms since `gather`.
   void scatter(const pfv::Forces& forces, double** per_atom);
+  static constexpr int returned_width = 7;
 
   double memory_usage() const;
 
@@ -59,8 +64,8 @@ class PfvGrainExchange : protected Pointers {
   std::vector<int> order_;             // received row of each sorted grain
 
   pfv::PackingArrays grains_;
-  Eigen::VectorXd masses_;
-  Eigen::Matrix3Xd forces_;
+  Eigen::VectorXd masses_, inertias_;
+  Eigen::Matrix3Xd forces_, torques_;
 };
 
 }  // namespace LAMMPS_NS

@@ -64,6 +64,7 @@ PfvGroups PfvOtherFixes::groups() const {
       groups.held |= other.groupbit;
     } else if (other.time_integrate) {
       groups.moved |= other.groupbit;
+      if (style_of(other).find("sphere") != std::string::npos) groups.turned |= other.groupbit;
     }
   }
   return groups;

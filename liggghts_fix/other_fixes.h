@@ -13,10 +13,12 @@ namespace LAMMPS_NS {
 struct PfvGroups {
   int flow = 0;   ///< the grains of the flow
   int moved = 0;  ///< those that a fix integrates with the forces on them
+  int turned = 0;  ///< those whose spin it integrates with the torques, too
   int held = 0;   ///< those whose force is overwritten, or whose velocity is prescribed, all the same
 
   /// Whether a force of the fluid changes the velocity of a grain with this mask.
   bool free(int mask) const { return (mask & moved) && !(mask & held); }
+  bool free_to_turn(int mask) const { return (mask & turned) && !(mask & held); }
 };
 
 class PfvOtherFixes : protected Pointers {

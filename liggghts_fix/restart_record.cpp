@@ -9,7 +9,7 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 3.0;
+constexpr double format_number = 4.0;
 
 class Reader {
  public:
@@ -48,11 +48,9 @@ std::vector<double> pack(const PfvRestartRecord& record) {
     data.insert(data.end(), values.begin(), values.end());
   };
   append(record.last_positions);
-  for (const auto* pressures :
-       {&record.flow.pore_pressures, &record.flow.lag_level, &record.flow.lag_delayed}) {
-    data.push_back(static_cast<double>(pressures->size()));
-    append(*pressures);
-  }
+  data.push_back(record.flow.volume_debt);
+  data.push_back(static_cast<double>(record.flow.pore_pressures.size()));
+  append(record.flow.pore_pressures);
   data.push_back(static_cast<double>(record.last_grains.tags.size()));
   append(record.last_grains.tags);
   append(record.last_grains.places);
@@ -66,9 +64,11 @@ std::vector<double> pack(const PfvRestartRecord& record) {
 
 PfvRestartRecord unpack(const char* bytes) {
   Reader reader(bytes);
-  if (reader.next() != format_number)
-    throw pfv::InputError("the restart file holds this fix in the form of another version; give "
-                          "the fix another ID to start the flow anew");
+  if (const double found = reader.next(); found != format_number)
+    throw pfv::InputError("the restart file holds this fix in form " +
+                          std::to_string(static_cast<int>(found)) + " of an older version, this one reads "
+                          "form " + std::to_string(static_cast<int>(format_number)) +
+                          "; give the fix another ID to start the flow anew");
   PfvRestartRecord record;
   record.step = static_cast<std::int64_t>(reader.next());
   record.flow.time = reader.next();
@@ -77,9 +77,8 @@ PfvRestartRecord unpack(const char* bytes) {
   record.steps_since_flow = static_cast<int>(reader.next());
   record.elapsed = reader.next();
   for (double& position : record.last_positions) position = reader.next();
-  for (auto* pressures :
-       {&record.flow.pore_pressures, &record.flow.lag_level, &record.flow.lag_delayed})
-    *pressures = reader.list<double>(reader.count());
+  record.flow.volume_debt = reader.next();
+  record.flow.pore_pressures = reader.list<double>(reader.count());
   const std::size_t grains = reader.count();
   record.last_grains.tags = reader.list<std::int64_t>(grains);
   record.last_grains.places = reader.list<double>(3 * grains);

@@ -26,7 +26,7 @@ const char* name_of(PfvCoupling coupling) {
 }
 
 /// The cheaper of the two couplings that go beyond the limit, by what a step costs in solves of the
-/// explicit coupling (doc/stability.md, costs): a stage is a solve and a product with E and S, about
+/// explicit coupling (doc/stability.md, costs): a stage is a solve and a product with S and S^T, about
 /// 1.6 sqrt(R) of them a step; an implicit step is one solve with a denser factor, made anew `steps`
 /// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB.
 PfvCoupling cheaper(double ratio, double steps, Eigen::Index grains) {
@@ -81,8 +81,7 @@ void FixPfv::choose_coupling() {
   else if (settings_.options.shear_viscous)  // which have no implicit step
     chosen_ = PfvCoupling::staged;
   else
-    chosen_ = staged_failed_ ? PfvCoupling::implicit
-                             : cheaper(ratio, steps, grains_.masses().size());
+    chosen_ = cheaper(ratio, steps, grains_.masses().size());
 }
 
 void FixPfv::take_implicit(bool advance) {
@@ -91,20 +90,10 @@ void FixPfv::take_implicit(bool advance) {
           : flow_->evaluate_implicit(packing, flow_step(), dynamics());
 }
 
-/// `auto` gives up staged steps, for the rest of the run, at the first that breaks its bound.
 void FixPfv::take_staged(bool advance) {
   const pfv::Packing packing = grains_.packing();
-  try {
-    advance ? flow_->step_staged(packing, elapsed_, dynamics())
-            : flow_->evaluate_staged(packing, flow_step(), dynamics());
-  } catch (const pfv::UnstableStep& unstable) {
-    if (settings_.coupling != PfvCoupling::automatic || settings_.options.shear_viscous) throw;
-    staged_failed_ = true;
-    chosen_ = PfvCoupling::implicit;
-    print("Fix pfv (id " + std::string(id) + "): implicit coupling from step " +
-          std::to_string(update->ntimestep) + " on: " + unstable.what() + "\n");
-    take_implicit(advance);
-  }
+  advance ? flow_->step_staged(packing, elapsed_, dynamics())
+          : flow_->evaluate_staged(packing, flow_step(), dynamics());
 }
 
 void FixPfv::step_flow() {
@@ -126,7 +115,6 @@ void FixPfv::step_flow() {
 /// that starts from a restart file.
 void FixPfv::evaluate_flow() {
   strain_of_a_step_ = 0.0;
-  staged_failed_ = false;
   choose_coupling();
   if (chosen_ == PfvCoupling::staged)
     take_staged(false);
@@ -145,28 +133,6 @@ double FixPfv::estimated_limit() const {
   return smallest;
 }
 
-/// Small grains that touch nothing in the pores of large ones: their own motion drives some of them on,
-/// the faster ones by e in 1000 limits of time, from a size ratio of 5 on (doc/stability.md, floating).
-void FixPfv::warn_of_small_grains(double limit) {
-  constexpr double safe_ratio = 4.0, limits_of_growth = 1000.0;
-  if (settings_.grid || settings_.options.shear_viscous) return;
-  const Eigen::VectorXd& masses = grains_.masses();
-  const auto radii = grains_.packing().radii;
-  double smallest = std::numeric_limits<double>::infinity(), largest = 0.0;
-  for (Eigen::Index k = 0; k < masses.size(); ++k) {
-    largest = std::max(largest, radii[k]);
-    if (std::isfinite(masses[k])) smallest = std::min(smallest, radii[k]);
-  }
-  if (!(largest > safe_ratio * smallest)) return;
-  char text[400];
-  std::snprintf(text, sizeof text,
-                "Fix pfv (id %s): the smallest free grain is %.3g times smaller than the largest grain; "
-                "the fluid shakes small grains that touch nothing, at any time step, within some "
-                "%.2g s. `shear_viscous yes` brakes them (with `coupling explicit` or `staged`)",
-                id, largest / smallest, limits_of_growth * limit);
-  error->warning(FLERR, text);
-}
-
 /// Says where the time step stands, at the beginning of a run; rank 0.
 void FixPfv::check_time_step() {
   if (!settings_.time_step_check && !needs_forces()) return;
@@ -182,7 +148,6 @@ void FixPfv::check_time_step() {
                 id, limit, estimated_limit(), flow_step(), ratio, static_cast<int>(pistons),
                 name_of(chosen_), flow_->stages());
   print(text);
-  warn_of_small_grains(limit);
   if (needs_forces() || ratio <= settings_.safety) return;
   std::snprintf(text, sizeof text,
                 "Fix pfv (id %s): the flow step of %.4g s is %.4g times the limit of the explicit "

@@ -142,6 +142,10 @@ Options options_of(const SolveArguments& arguments) {
     options.conductance = conductance_law_named(*arguments.conductance);
   else if (options.partition == Partition::yade)
     options.conductance = ConductanceLaw::hydraulic_radius;  // YADE's
+  if (arguments.volume_rates)
+    options.volume_rates = volume_rates_named(*arguments.volume_rates);
+  else if (options.partition == Partition::yade)
+    options.volume_rates = VolumeRates::geometric;  // YADE's
   options.solver = solver_named(arguments.solver);
   options.ordering = ordering_named(arguments.ordering);
   options.precision = precision_named(arguments.precision);
@@ -241,6 +245,10 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
                      "geometry of a throat: signed volumes, or YADE's rules to reproduce its\n"
                      "results (default " + arguments.partition + ")")
       ->option_text("signed|yade")->group(group);
+  command.add_option("--volume-rates", arguments.volume_rates,
+                     "how moving grains change the pores' volumes: by the transpose of the forces,\n"
+                     "or by the papers' geometry (default reciprocal; with --partition yade geometric)")
+      ->option_text("reciprocal|geometric")->group(group);
   command.add_option("--solver", arguments.solver,
                      "linear solver (default " + arguments.solver + ": cholmod)")
       ->option_text("auto|cholmod|klu2|mumps|cg|gauss_seidel")->group(group);

@@ -2,10 +2,10 @@
 // YADE 2023.02a, the reference implementation of the method, on packing_100 and packing_500. Its
 // rules differ from ours (support/yade_rules.hpp). With its rules on our network its numbers come
 // out, so network, system and solver agree with it and the rules are the whole difference.
+#include "support/motions.hpp"
 #include "support/yade_rules.hpp"
 
 #include "pfv/pfv.hpp"
-#include "physics/volume_rates.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
 #include "support/tables.hpp"
@@ -172,8 +172,7 @@ TEST_P(YadeMoving, ItsRulesGiveItsForcesUnderADrainedPiston) {
   const Stages s = stages_of(GetParam().packing(), box);
   Eigen::Matrix3Xd velocities = Eigen::Matrix3Xd::Zero(3, s.spheres.size());
   velocities.row(2) = -s.spheres.centres.row(2);
-  const Eigen::VectorXd rates = pfv::volume_rates(
-      pfv::volume_rate_matrix(s.network, s.spheres), velocities, box);
+  const Eigen::VectorXd rates = geometric_rates(s, velocities, box);
   const Eigen::VectorXd p = pressures_of(s, yade_conductances(s), rates);
   const Eigen::Matrix3Xd theirs =
       force_table(GetParam().file("_moving_forces.csv"), s.spheres.size());

@@ -74,15 +74,15 @@ void finish(Solved& result, const Spheres& spheres, const Box& box,
   }
   result.solver->factor(system.matrix);
   const ForceMatrix forces =
-      force_matrix(network, throats, viscous_shares(law, network, throats, spheres),
-                   spheres.size(), {true, true});
+      force_matrix(network, spheres, throats, viscous_shares(law, network, throats, spheres),
+                   spheres.size(), {});
   Eigen::VectorXd pressures(network.pores()), b, x = Eigen::VectorXd::Zero(unknowns.count);
   impose_pressures(network, boundaries, box, 0.0, pressures);
   right_hand_side(system, unknowns, box, Eigen::VectorXd::Zero(network.pores()), pressures, b);
   result.solver->solve(b, x);
   for (int p = 0; p < network.pores(); ++p)
     if (unknowns.of_pore[p] >= 0) pressures[p] = x[unknowns.of_pore[p]];
-  result.forces = multiply(forces, pressures).leftCols(spheres.size());
+  result.forces = multiply(forces, pressures).topLeftCorner(3, spheres.size());
   result.rate = 0.0;
   for (const auto& coupling : system.couplings)
     if (network.pore_faces[coupling.pore] >> static_cast<int>(Face::zhi) & 1)

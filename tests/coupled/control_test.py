@@ -174,7 +174,7 @@ class Control(CoupledTest):
         rows = read_dump(self.folder / "d.dump")[0]
         outside = [row for row in rows.values() if row[2] > 0.5 * EDGE]
         self.assertGreater(len(outside), 0)
-        self.assertEqual({tuple(row[7:]) for row in outside}, {(0.0, 0.0, 0.0, 0.0)})
+        self.assertEqual({tuple(row[7:11]) for row in outside}, {(0.0, 0.0, 0.0, 0.0)})
         thermo = read_thermo((self.folder / "log.liggghts").read_text())
         self.assertEqual(thermo[0]["flow[8]"], len(outside))
 

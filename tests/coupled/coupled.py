@@ -67,8 +67,8 @@ def faces(**boundaries):
 
 FLOW = "viscosity 0.01 " + faces(zlo="pressure 10", zhi="pressure 0")
 DUMP = ("dump d all custom 1 {0} id x y z radius vx vy vz "
-        "f_flow[1] f_flow[2] f_flow[3] f_flow[4]\n"
-        "dump_modify d sort id format \"%d" + " %.17g" * 11 + "\"\n")
+        "f_flow[1] f_flow[2] f_flow[3] f_flow[4] omegax omegay omegaz f_flow[5] f_flow[6] f_flow[7]\n"
+        "dump_modify d sort id format \"%d" + " %.17g" * 17 + "\"\n")
 
 
 def dump(name):
@@ -76,7 +76,7 @@ def dump(name):
 
 
 def read_dump(path):
-    """{step: {id: [x, y, z, radius, vx, vy, vz, fx, fy, fz, p]}}"""
+    """{step: {id: [x, y, z, radius, velocity, force, p, spin, torque]}}"""
     steps, lines = {}, path.read_text().splitlines()
     at = 0
     while at < len(lines):

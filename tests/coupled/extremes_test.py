@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Full disks and killed runs: one sentence, and nothing lost that was written. Staged steps that go out
-of control."""
+"""Full disks and killed runs: one sentence, and nothing lost that was written."""
 import os
 import shutil
 import signal
@@ -9,19 +8,9 @@ import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from coupled import BIN, EDGE, FLOW, HANG, HERE, CoupledTest, faces, packing, random_velocities
-from coupled import read_thermo, write_data
+from coupled import BIN, FLOW, HANG, HERE, CoupledTest, packing, random_velocities, write_data
 
 HEAD = "include in.packing\n"
-NESTED = (  # x, y, z, radius in edges of the box
-    (0.6377, 0.1333, 0.7586, 0.2961), (0.6431, 0.1482, 0.7321, 0.2363),
-    (0.5018, 0.1230, 0.8088, 0.0464), (0.4895, 0.1208, 0.8190, 0.0160),
-    (0.4887, 0.1203, 0.8199, 0.0147), (0.4872, 0.1217, 0.8189, 0.0110),
-    (0.4870, 0.1233, 0.8172, 0.0076), (0.4852, 0.1217, 0.8194, 0.0029),
-    (0.2171, 0.7767, 0.8685, 0.3991), (0.1060, 0.6420, 0.9215, 0.1346),
-    (0.1642, 0.5968, 0.9395, 0.0384), (0.1744, 0.6001, 0.9283, 0.0196),
-    (0.1720, 0.6078, 0.9281, 0.0105), (0.1722, 0.6004, 0.9311, 0.0028),
-    (0.1724, 0.6001, 0.9317, 0.0014), (0.7521, 0.7455, 0.4635, 0.2457))
 
 
 class Files(CoupledTest):
@@ -90,45 +79,6 @@ class Files(CoupledTest):
     @staticmethod
     def entries(collection):
         return collection.read_text().count("<DataSet") if collection.exists() else 0
-
-
-class FeedingFluid(CoupledTest):
-    """Grains that overlap by most of their radii: the papers' S feeds energy to them, whatever the
-    time step (doc/stability.md, growth)."""
-    STEP = 1e-6
-
-    def setUp(self):
-        super().setUp()
-        write_data(self.folder, [(n, *(EDGE * value for value in sphere))
-                                 for n, sphere in enumerate(NESTED, 1)],
-                   {n: (0.0, 0.0, -sphere[2]) for n, sphere in enumerate(NESTED, 1)})
-        limit = self.rows(1.0, "", "run 0\n")[0]["flow[6]"]
-        self.viscosity = 23 * limit / self.STEP  # R = 23: stages with the whole of S
-
-    def script(self, viscosity, words, run):
-        return (HEAD + f"fix flow all pfv viscosity {viscosity!r} "
-                f"{faces(zlo='pressure 1', zhi='pressure 0')} {words}\ntimestep {self.STEP}\n"
-                "thermo_style custom step ke f_flow[6] f_flow[7] f_flow[9]\n"
-                "thermo_modify norm no format float %.15g\nthermo 1\n" + run)
-
-    def rows(self, *words):
-        self.screen = self.liggghts(self.script(*words))
-        return read_thermo((self.folder / "log.liggghts").read_text())
-
-    def test_staged_coupling_refuses_the_step(self):
-        self.refused(self.script(self.viscosity, "coupling staged culprits seventh.vtu", "run 20\n"),
-                     "out of control", "sphere 7", "implicit", "drawn in seventh.vtu")
-        self.assertIn(b'NumberOfPoints="1"', (self.folder / "seventh.vtu").read_bytes())
-
-    def test_auto_goes_on_with_the_implicit_coupling(self):
-        energy = [row["KinEng"] for row in self.rows(self.viscosity, "coupling auto", "run 10\n")]
-        said = [line for line in self.screen.splitlines() if "implicit coupling from step" in line]
-        self.assertEqual(len(said), 1, self.screen)
-        self.assertIn("sphere 7", said[0])
-        alone = [row["KinEng"] for row in
-                 self.rows(self.viscosity, "coupling implicit", "run 10\n")]
-        for one, other in zip(energy, alone):
-            self.assertAlmostEqual(one, other, delta=1e-2 * max(alone))
 
 
 if __name__ == "__main__":

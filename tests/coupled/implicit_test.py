@@ -38,15 +38,21 @@ class Implicit(SettledTest):
         """Of first order in the time step: 0.8 % of the settlement and 1 % of the peak pressure were
         measured, half of it at half of the step; most of it are the dashpots, which act with v(n-1/2)."""
         implicit = self.thermo(self.script(self.at_ratio(20, "coupling implicit"),
-                                           "thermo 10\nrun 120\n"))
-        fine = self.thermo(self.script(self.at_ratio(20, ""), "thermo 250\nrun 3000\n",
+                                           "thermo 1\nrun 120\n"))
+        fine = self.thermo(self.script(self.at_ratio(20, ""), "thermo 25\nrun 3000\n",
                                        step=STEP / 25))
-        start = fine[0]["height"]
-        settled = abs(fine[-1]["height"] - start)
-        peak = max(row["flow[7]"] for row in fine[1:])
-        for row, other in list(zip(implicit, fine))[1:]:
+        settled = abs(fine[-1]["height"] - fine[0]["height"])
+        peak = max(row["flow[7]"] for row in fine[20:])
+        compared = 0
+        for at in range(20, 121):
+            row, other = implicit[at], fine[at]
             self.assertLess(abs(row["height"] - other["height"]), 0.01 * settled)
+            # a new network's pressures jump for some steps, until the velocities follow it
+            if any(run[at]["flow[5]"] != run[at - 4]["flow[5]"] for run in (implicit, fine)):
+                continue
             self.assertLess(abs(row["flow[7]"] - other["flow[7]"]), 0.012 * peak)
+            compared += 1
+        self.assertGreater(compared, 30)
 
     # pistons
 
@@ -100,9 +106,8 @@ class Implicit(SettledTest):
         setups = 0, 41  # of the two runs: LIGGGHTS kicks half a step
         for at in set(range(1, len(rows) - 1)) - {one + by for one in setups for by in (-1, 0)}:
             before, row, after = rows[at - 1:at + 2]
-            place = 1 - min(1, 30 * row["flow[6]"] / STEP) / 3
-            lost = ((1 - place) * (before["lid[12]"] - row["lid[12]"]) +
-                    place * (row["lid[12]"] - after["lid[12]"])) * EDGE**2 / STEP
+            lost = ((before["lid[12]"] - row["lid[12]"]) / 3 +
+                    (row["lid[12]"] - after["lid[12]"]) * 2 / 3) * EDGE**2 / STEP
             self.assertAlmostEqual((row["flow[2]"] - row["flow[1]"]) / lost, 1.0, delta=1e-6)
 
     # cost

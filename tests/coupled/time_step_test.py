@@ -41,19 +41,6 @@ class TimeStep(SettledTest):
         free, _ = self.both("", {"zlo": "pressure 0"}, "--face", "zlo:pressure=0")
         self.assertLess(printed, 0.5 * free)
 
-    def test_small_grains_among_large_ones_are_warned_of(self):
-        """Not where all are alike, nor with shear forces, nor where the small one is frozen."""
-        def warned(ratio, words="", before=""):
-            grains = [(n, x, y, z, r / ratio if n == 63 else r) for n, x, y, z, r in SettledTest.rest]
-            write_data(self.folder, grains)
-            return "shakes small grains" in self.liggghts(
-                self.script(self.fix(1.0, words), "run 0\n", before=before))
-
-        self.assertTrue(warned(6))
-        self.assertFalse(warned(3))
-        self.assertFalse(warned(6, "shear_viscous yes"))
-        self.assertFalse(warned(6, before="group small id 63\nfix hold small move linear 0 0 0\n"))
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -123,8 +123,8 @@ Conditioning conditioning(const pfv::PackingArrays& packing) {
   const auto shares =
       pfv::viscous_shares(flow.options().conductance, s.network, s.throats, s.spheres);
   const pfv::ForceMatrix matrix =
-      pfv::force_matrix(s.network, s.throats, shares, s.spheres.size(), {true, true});
-  result.force_error = pfv::multiply(matrix, wrong).leftCols(s.spheres.size()).colwise().norm()
+      pfv::force_matrix(s.network, s.spheres, s.throats, shares, s.spheres.size(), {});
+  result.force_error = pfv::multiply(matrix, wrong).topLeftCorner(3, s.spheres.size()).colwise().norm()
                            .maxCoeff() / forces.colwise().norm().maxCoeff();
   return result;
 }

@@ -26,6 +26,7 @@ struct Case {
   pfv::Fluid fluid;
   pfv::Options options;
   double dt;
+  bool implicit = false;
   bool staged;
 };
 
@@ -135,6 +136,18 @@ Case case_number(std::uint64_t seed, std::uint64_t number) {
   c.packing.velocities = random_velocities(c.packing, c.box, random);
   c.dt = logarithmic(random, 1e-9, 1.0);  // up to a jump of the whole packing
   c.staged = random() < 0.15;
+  c.implicit = random() < 0.15;
+  if (c.packing.velocities.cols() > 0 && random() < 0.5) {
+    c.packing.angular_velocities = c.packing.velocities;
+    for (Eigen::Index k = 0; k < c.packing.radii.size(); ++k)
+      c.packing.angular_velocities.col(k) = 3.0 * random.in_cube();
+  }
+  if (random() < 0.2 && !c.box.periodic[0]) c.box[pfv::Face::xhi].sliding = {0.0, 1.0, -2.0};
+  if (random() < 0.1 && !c.box.periodic[1]) c.box[pfv::Face::ylo].spin = 1.0;
+  if (random() < 0.05 || c.options.partition == pfv::Partition::yade) {
+    c.options.volume_rates = pfv::VolumeRates::geometric;
+    c.staged = c.implicit = false;
+  }
   return c;
 }
 
@@ -156,7 +169,8 @@ std::string description(const Case& c) {
   if (!c.box.patches.empty()) text << ", a patch";
   if (c.fluid.bulk_modulus) text << ", bulk modulus " << *c.fluid.bulk_modulus;
   text << ", dt " << c.dt << (c.packing.velocities.cols() ? ", moving" : ", still")
-       << (c.staged ? ", staged" : "");
+       << (c.staged ? ", staged" : c.implicit ? ", implicit" : "") << ", "
+       << pfv::name_of(c.options.volume_rates);
   return text.str();
 }
 
@@ -205,7 +219,7 @@ bool all_finite(const pfv::Report& r) {
 
 void check_result(const Case& c, const pfv::Flow& flow, bool at_rest, Outcome& outcome) {
   const pfv::Forces& forces = flow.forces();
-  if (!forces.total.allFinite() || !forces.viscous.allFinite() ||
+  if (!forces.total.allFinite() || !forces.torque.allFinite() || !forces.viscous.allFinite() ||
       !forces.sphere_pressure.allFinite())
     outcome.fail("a force that is not finite");
   if (!flow.pore_pressures().allFinite()) outcome.fail("a pressure that is not finite");
@@ -224,15 +238,17 @@ void run_flow(Case& c, Outcome& outcome) {
   pfv::Flow flow(c.box, c.fluid, c.options);
   pfv::PackingArrays still = c.packing;
   still.velocities.resize(3, 0);
+  still.angular_velocities.resize(3, 0);
   flow.evaluate(still.view(), c.dt);
-  check_result(c, flow, true, outcome);
+  check_result(c, flow, c.box[pfv::Face::xhi].sliding.isZero() && c.box[pfv::Face::ylo].spin == 0.0,
+               outcome);
   const Eigen::Vector3d place = c.box.lower + 0.37 * (c.box.upper - c.box.lower);
   if (flow.network().cells() > 0 && !std::isfinite(flow.pressure_at(place)))
     outcome.fail("a pressure at a place that is not finite");
   const Eigen::VectorXd masses = c.packing.radii.array().cube() * 4e3;
   const double limit = flow.time_step_limit(masses);
   if (!(limit > 0.0)) outcome.fail("a time step limit of " + std::to_string(limit));
-  if (c.staged) c.dt = std::min(c.dt, 1e3 * limit);
+  if (c.staged || c.implicit) c.dt = std::min(c.dt, 1e3 * limit);
   if (c.packing.velocities.cols() == 0) return;
   const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, masses.size());
   const pfv::GrainDynamics grains{{masses.data(), masses.size()}, {none.data(), 3, none.cols()}};
@@ -240,6 +256,8 @@ void run_flow(Case& c, Outcome& outcome) {
     c.packing.positions += c.dt * c.packing.velocities;
     if (c.staged)
       flow.step_staged(c.packing.view(), c.dt, grains);
+    else if (c.implicit)
+      flow.step_implicit(c.packing.view(), c.dt, grains);
     else
       flow.step(c.packing.view(), c.dt);
     check_result(c, flow, false, outcome);

@@ -355,6 +355,7 @@ TEST(DarcyGrid, RefusesWhatItCannotUse) {
   pfv::Options yade;
   yade.partition = pfv::Partition::yade;
   yade.conductance = pfv::ConductanceLaw::hydraulic_radius;  // YADE's
+  yade.volume_rates = pfv::VolumeRates::geometric;
   expect_line(refusal({}, {}, grid_of(1, 1, 1), yade), "no partition");
   expect_line(refusal({}, {}, grid_of(1, 0, 1), {}), "whole number >= 1");
   expect_line(refusal({}, {}, grid_of(2000, 2000, 2000), {}), "too many");

@@ -2,10 +2,10 @@
 // What a Flow does again at a step and what it keeps, read from its counts.
 #include "coupling/built_network.hpp"
 #include "pfv/pfv.hpp"
-#include "physics/volume_rates.hpp"
 #include "support/boxes.hpp"
 #include "support/drained_piston.hpp"
 #include "support/packings.hpp"
+#include "support/motions.hpp"
 #include "support/stages.hpp"
 
 #include <cstring>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace support;
 
-constexpr double dt = 1e-3;
+constexpr double dt = 2.5e-4;
 
 /// The grains sink with v = (0, 0, -z).
 struct Piston : DrainedPiston {
@@ -23,8 +23,7 @@ struct Piston : DrainedPiston {
   /// max |dV/dt| / V over the pores, 1/s (thesis eqs. 5.13-5.14).
   double strain_rate() const {
     const Stages s = stages_of(packing, box);
-    const Eigen::VectorXd rates = pfv::volume_rates(
-        pfv::volume_rate_matrix(s.network, s.spheres), packing.velocities, box);
+    const Eigen::VectorXd rates = reciprocal_rates(s, motion_of(packing.velocities, box));
     double largest = 0.0;
     for (int p = 0; p < s.network.pores(); ++p) {
       const double volume = s.throats.pore_fluid_volume[p];

@@ -3,9 +3,9 @@
 #include "physics/force_matrix.hpp"
 
 #include "pfv/pfv.hpp"
-#include "physics/volume_rates.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
+#include "support/motions.hpp"
 #include "support/stages.hpp"
 #include "support/yade_rules.hpp"
 
@@ -22,18 +22,18 @@ Eigen::VectorXd random_pressures(int pores, std::uint64_t seed) {
   return p;
 }
 
-/// With the shares of a law; the papers' unless it is named.
-pfv::ForceMatrix force_matrix_of(
-    const Stages& s, pfv::ForceParts parts = {true, true},
-    pfv::ConductanceLaw law = pfv::ConductanceLaw::hydraulic_radius) {
-  return pfv::force_matrix(s.network, s.throats,
-                           pfv::viscous_shares(law, s.network, s.throats, s.spheres),
-                           s.spheres.size(), parts);
+/// With the papers' shares.
+pfv::ForceMatrix papers_matrix(const Stages& s, pfv::ForceParts parts = {}) {
+  return force_matrix_of(s, pfv::ConductanceLaw::hydraulic_radius, parts);
+}
+
+Eigen::Matrix3Xd forces_of(const pfv::ForceMatrix& matrix, const Eigen::VectorXd& p) {
+  return pfv::multiply(matrix, p).topRows<3>();
 }
 
 /// Pressure force on the six faces: p times the pore's base, outwards.
 Eigen::Vector3d pressure_on_faces(const Stages& s, const Eigen::VectorXd& p) {
-  const auto areas = pfv::base_areas(s.network, s.boundaries, s.spheres);
+  const auto areas = bases_of(s).area;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t c = 0; c < areas.size(); ++c) {
     const auto& contact = s.boundaries.contacts[c];
@@ -50,9 +50,8 @@ TEST(Forces, OfSpheresAndFacesCancelForAnyPressures) {
     const Eigen::VectorXd p = random_pressures(s.network.pores(), 8);
     for (const auto law :
          {pfv::ConductanceLaw::hydraulic_radius, pfv::ConductanceLaw::open_throat}) {
-      const auto matrix = force_matrix_of(s, {true, true}, law);
       const Eigen::Vector3d sum =
-          pfv::multiply(matrix, p).rowwise().sum() + pressure_on_faces(s, p);
+          forces_of(force_matrix_of(s, law), p).rowwise().sum() + pressure_on_faces(s, p);
       EXPECT_LT(sum.norm(), 1e-12);
     }
   }
@@ -60,7 +59,7 @@ TEST(Forces, OfSpheresAndFacesCancelForAnyPressures) {
 
 TEST(Forces, VanishForAUniformPressure) {
   const Stages s = stages_of(data_packing("packing_100.csv"), pfv::Box{});
-  const auto matrix = force_matrix_of(s);
+  const auto matrix = papers_matrix(s);
   const Eigen::VectorXd p = Eigen::VectorXd::Ones(s.network.pores());
   EXPECT_LT(pfv::multiply(matrix, p).cwiseAbs().maxCoeff(), 1e-15);
 }
@@ -70,7 +69,7 @@ TEST(Forces, ArePressurePlusViscousPart) {
   const int n = s.spheres.size();
   const Eigen::VectorXd p = random_pressures(s.network.pores(), 8);
   const auto part = [&](pfv::ForceParts parts) {
-    return pfv::multiply(force_matrix_of(s, parts), p);
+    return forces_of(papers_matrix(s, parts), p);
   };
   const Eigen::Matrix3Xd total = part({true, true});
   EXPECT_LT((part({true, false}) + part({false, true}) - total).norm(), 1e-15 * n);
@@ -139,8 +138,7 @@ TEST(Forces, AreSectorsAndSurfaceSharesFacetByFacet) {
     }
   }
   EXPECT_LT(crossing, s.network.facets() / 100);
-  const auto matrix = force_matrix_of(s);
-  const Eigen::Matrix3Xd forces = pfv::multiply(matrix, p);
+  const Eigen::Matrix3Xd forces = forces_of(papers_matrix(s), p);
   // pores on the rim of a pressure face rub on one side only: other shares for them
   std::vector<char> rim(s.spheres.size(), 0);
   for (int c = 0; c < s.network.cells(); ++c) {

@@ -15,6 +15,8 @@ using namespace support;
 using pfv::Face;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
+/// How far between the velocities taken and those handed back the ones lie that the pressures belong to.
+constexpr double theta = 2.0 / 3.0;
 
 /// The contacts and wall contacts of a packing as linear springs with dashpots, bilateral: the linear
 /// system whose stability the study of the scheme was about. Displacements are from the packing's rest.
@@ -82,6 +84,7 @@ struct Sample {
       : flow(std::move(box), fluid(viscosity, bulk_modulus)) {
     Random random(1);
     packing.velocities.resize(3, masses.size());
+    packing.angular_velocities = others;
     for (int k = 0; k < masses.size(); ++k) packing.velocities.col(k) = 1e-9 * random.in_cube();
   }
   static pfv::Box drained() {
@@ -104,30 +107,33 @@ struct Sample {
   const pfv::Forces& implicit(double dt) {
     return flow.step_implicit(packing.view(), dt, dynamics());
   }
-  /// What the host makes of the forces: v(n+3/2).
-  Eigen::Matrix3Xd next_velocities(const Eigen::Matrix3Xd& fluid_forces, double dt) const {
-    Eigen::Matrix3Xd v = packing.velocities;
-    v.array() += dt * ((fluid_forces + others).array().rowwise() / masses.transpose().array());
-    return v;
+  struct Velocities {
+    Eigen::Matrix3Xd linear, angular;
+  };
+  /// What the host makes of the forces: those of the step's middle, v(n+3/2), or `part` of the way there.
+  Velocities next_velocities(const pfv::Forces& forces, double dt, double part = 1.0) const {
+    Velocities next{packing.velocities, packing.angular_velocities};
+    next.linear.array() +=
+        part * dt * ((forces.total + others).array().rowwise() / masses.transpose().array());
+    const Eigen::ArrayXd inertias = 0.4 * masses.array() * packing.radii.array().square();
+    next.angular.array() += part * dt * (forces.torque.array().rowwise() / inertias.transpose());
+    return next;
   }
-  /// How far between the velocities taken and those handed back the ones lie that the pressures of the
-  /// last step belong to.
-  double place_in_step(double dt) {
-    return 1.0 - std::min(1.0, 30.0 * flow.time_step_limit(masses, pistons) / dt) / 3.0;
+  void take(const Velocities& velocities) {
+    packing.velocities = velocities.linear;
+    packing.angular_velocities = velocities.angular;
   }
-  Eigen::Matrix3Xd weighted_velocities(const Eigen::Matrix3Xd& fluid_forces, double dt) {
-    return packing.velocities +
-           place_in_step(dt) * (next_velocities(fluid_forces, dt) - packing.velocities);
-  }
-  void move(const Eigen::Matrix3Xd& fluid_forces, double dt) {
-    packing.velocities = next_velocities(fluid_forces, dt);
+  void move(const pfv::Forces& forces, double dt) {
+    take(next_velocities(forces, dt));
     displacements += dt * packing.velocities;
   }
   /// Kinetic and elastic energy, without a factor.
   double energy(const Springs& springs) const {
     double sum = 0.0;
     for (int k = 0; k < masses.size(); ++k)
-      sum += masses[k] * packing.velocities.col(k).squaredNorm();
+      sum += masses[k] * (packing.velocities.col(k).squaredNorm() +
+                          0.4 * std::pow(packing.radii[k], 2) *
+                              packing.angular_velocities.col(k).squaredNorm());
     for (const auto& c : springs.contacts) {
       Eigen::Vector3d du = displacements.col(c.a);
       if (c.b >= 0) du -= displacements.col(c.b);
@@ -150,7 +156,7 @@ TEST(ImplicitStep, WithContactsEnergyDecaysAtTenThousandLimitsWhereTheExplicitSt
     std::vector<double> energies;
     for (int step = 0; step < 1000; ++step) {
       run.others = springs.forces(run.displacements, run.packing.velocities, run.masses);
-      run.move(run.implicit(springs.step).total, springs.step);
+      run.move(run.implicit(springs.step), springs.step);
       if (step % 200 == 199) energies.push_back(run.energy(springs));
     }
     for (std::size_t i = 0; i < energies.size(); ++i)
@@ -159,7 +165,7 @@ TEST(ImplicitStep, WithContactsEnergyDecaysAtTenThousandLimitsWhereTheExplicitSt
       explicit_run.others =
           springs.forces(explicit_run.displacements, explicit_run.packing.velocities, run.masses);
       explicit_run.move(
-          explicit_run.flow.step(explicit_run.packing.view(), springs.step).total, springs.step);
+          explicit_run.flow.step(explicit_run.packing.view(), springs.step), springs.step);
     }
     EXPECT_GT(explicit_run.energy(springs), 1e6 * start) << ratio;
   }
@@ -179,9 +185,9 @@ TEST(ImplicitStep, PressuresAreThoseOfVelocitiesBetweenThoseTakenAndThoseHandedB
       for (const double limits : {10.0, 100.0, 1000.0}) {
         const double dt = limits * run.limit();
         const pfv::FlowState before = run.flow.state();
-        const Eigen::Matrix3Xd forces = run.implicit(dt).total;
-        const Eigen::Matrix3Xd next = run.next_velocities(forces, dt);
-        run.packing.velocities = run.weighted_velocities(forces, dt);
+        const pfv::Forces forces = run.implicit(dt);
+        const auto next = run.next_velocities(forces, dt);
+        run.take(run.next_velocities(forces, dt, theta));
         const pfv::Report report = run.flow.report();
         EXPECT_LT(std::abs(report.mass_error), 1e-10);
         EXPECT_LT(report.force_balance_error, 1e-12);
@@ -192,7 +198,7 @@ TEST(ImplicitStep, PressuresAreThoseOfVelocitiesBetweenThoseTakenAndThoseHandedB
         const Eigen::VectorXd p = run.flow.pore_pressures();
         EXPECT_LT((steady.pore_pressures() - p).norm(),
                   1e-9 * (p.array() - p.mean()).matrix().norm());
-        run.packing.velocities = next;
+        run.take(next);
       }
     }
 }
@@ -203,7 +209,7 @@ TEST(ImplicitStep, OfFirstOrderWithAThirdOfTheErrorOfTheExplicitStep) {
     Sample run;
     const double dt = ratio * run.limit();
     for (int step = 0; step < static_cast<int>(std::lround(4.0 / ratio)); ++step)
-      run.move(implicit ? run.implicit(dt).total : run.flow.step(run.packing.view(), dt).total, dt);
+      run.move(implicit ? run.implicit(dt) : run.flow.step(run.packing.view(), dt), dt);
     return run.packing.velocities;
   };
   const Eigen::Matrix3Xd exact = 2.0 * velocities(1.0 / 512, false) - velocities(1.0 / 256, false);
@@ -227,7 +233,7 @@ TEST(ImplicitStep, AFrozenGrainKeepsItsVelocityInTheContinuity) {
   Sample run;
   run.masses.head(40).setConstant(infinite);
   const double dt = 1000.0 * run.limit();
-  run.packing.velocities = run.weighted_velocities(run.implicit(dt).total, dt);
+  run.take(run.next_velocities(run.implicit(dt), dt, theta));
   pfv::Flow steady(Sample::drained(), viscosity_one());
   steady.evaluate(run.packing.view());
   EXPECT_LT((steady.pore_pressures() - run.flow.pore_pressures()).norm(),
@@ -271,7 +277,7 @@ TEST(ImplicitStep, ANewNetworkGoesOnFromItsOwnPressures) {
     run->others.row(2).setConstant(-1e-9);
     for (int step = 0; step < 50; ++step) {
       if (run == &anew && step == 40) run->flow.rebuild();
-      run->packing.velocities = run->next_velocities(run->implicit(dt).total, dt);
+      run->take(run->next_velocities(run->implicit(dt), dt));
     }
   }
   EXPECT_EQ(anew.flow.retriangulations(), 1);
@@ -346,13 +352,14 @@ TEST(PistonStep, ImplicitAndStagedReachTheVelocityAtWhichTheDragBearsTheLoad) {
         run.flow.step_staged(run.packing.view(), dt, run.dynamics());
       const double change = dt / mass * (load + run.force());
       if (implicit) {
-        const double weighted = velocity + run.place_in_step(dt) * change;
+        const double weighted = velocity + theta * change;
         EXPECT_NEAR(run.force() / (-drag * weighted), 1.0, 1e-10);
       }
       velocity += change;
-      EXPECT_LE(std::abs(velocity), (implicit ? 1.11 : 1.001) * std::abs(load / drag));
+      EXPECT_LE(std::abs(velocity), (implicit ? 1.5 : 1.001) * std::abs(load / drag));
     }
-    EXPECT_NEAR(velocity * drag / load, 1.0, implicit ? 2e-10 : 1e-6);
+    // what is far beyond the limit swings by half from step to step
+    EXPECT_NEAR(velocity * drag / load, 1.0, implicit ? 1.1 * std::pow(0.5, 10) : 1e-6);
     EXPECT_LT(std::abs(run.flow.report().mass_error), 1e-10);
   }
 }

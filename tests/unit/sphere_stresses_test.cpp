@@ -28,7 +28,8 @@ SmallSphere ninth_sphere(pfv::ConductanceLaw law) {
                                 Eigen::Vector3d::Zero());
   };
   const auto forces = pfv::multiply(
-      pfv::force_matrix(s.network, s.throats, shares, s.spheres.size(), {false, true}), pressures);
+      pfv::force_matrix(s.network, s.spheres, s.throats, shares, s.spheres.size(), {false, true}),
+      pressures);
   return {(stresses(shares) - stresses(none)).col(8).cwiseAbs().maxCoeff(), forces(2, 8)};
 }
 

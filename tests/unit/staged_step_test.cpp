@@ -69,17 +69,25 @@ struct Braked {
     none = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
     std::srand(7);
     packing.velocities = 1e-9 * Eigen::Matrix3Xd::Random(3, packing.ids.size());
+    packing.angular_velocities = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
     flow.evaluate(packing.view());
   }
   double limit() { return flow.time_step_limit(masses); }
   double energy() const {
-    return (masses.array() * packing.velocities.colwise().squaredNorm().transpose().array()).sum();
+    return (masses.array() * packing.velocities.colwise().squaredNorm().transpose().array()).sum() +
+           (inertias().array() *
+            packing.angular_velocities.colwise().squaredNorm().transpose().array()).sum();
+  }
+  Eigen::VectorXd inertias() const {
+    return 0.4 * masses.array() * packing.radii.array().square();
   }
   GrainDynamics dynamics() const {
     return {{masses.data(), masses.size()}, {none.data(), 3, none.cols()}};
   }
-  void move(const Eigen::Matrix3Xd& force, double dt) {
-    packing.velocities.array() += dt * (force.array().rowwise() / masses.transpose().array());
+  void move(const Forces& forces, double dt) {
+    packing.velocities.array() += dt * (forces.total.array().rowwise() / masses.transpose().array());
+    packing.angular_velocities.array() +=
+        dt * (forces.torque.array().rowwise() / inertias().transpose().array());
   }
 };
 
@@ -87,41 +95,34 @@ TEST(StagedStep, ExplicitStepGrowsBeyondTheLimitAndStagedStepDoesNot) {
   Braked explicit_run;
   const double dt = 20.0 * explicit_run.limit(), start = explicit_run.energy();
   for (int step = 0; step < 10; ++step)
-    explicit_run.move(explicit_run.flow.step(explicit_run.packing.view(), dt).total, dt);
+    explicit_run.move(explicit_run.flow.step(explicit_run.packing.view(), dt), dt);
   EXPECT_GT(explicit_run.energy(), 1e6 * start);
 
   Braked run;
   double last = run.energy();
   for (int step = 0; step < 10; ++step) {
-    run.move(run.flow.step_staged(run.packing.view(), dt, run.dynamics()).total, dt);
+    run.move(run.flow.step_staged(run.packing.view(), dt, run.dynamics()), dt);
     EXPECT_LT(run.energy(), last);
     last = run.energy();
   }
   EXPECT_GT(run.flow.stages(), 1);
 }
 
-TEST(StagedStep, FarBeyondTheLimitItFeedsLessThanTheStepIsLong) {
-  // The papers' S is not the transpose of E: in a few modes the fluid feeds energy, here 1e-4 of it a limit
-  // of time, which contacts hide. Beyond 24 limits a step the stages take part of S alone: 0.98 % and 1.3 %
-  // a step were measured at R = 100 and 1000, where S itself feeds 1.04 % and 10.4 %. Of the rest, motions that
-  // squeeze no pore keep their energy.
-  for (const auto& [ratio, fed] : {std::pair(100.0, 1.0102), std::pair(1000.0, 1.015)}) {
+TEST(StagedStep, NoMotionIsFedHoweverLongTheStepIs) {
+  for (const double ratio : {100.0, 1000.0, 1e4}) {
     Braked run;
-    const double dt = ratio * run.limit(), start = run.energy();
-    const auto steps = [&](int count) {
-      for (int step = 0; step < count; ++step)
-        run.move(run.flow.step_staged(run.packing.view(), dt, run.dynamics()).total, dt);
-      return run.energy();
-    };
-    const double early = steps(200), late = steps(50);
-    EXPECT_LT(early, 17.0 * start);
-    EXPECT_LT(late, early * std::pow(fed, 50)) << ratio;
+    const double dt = ratio * run.limit();
+    double last = run.energy();
+    for (int step = 0; step < 40; ++step) {
+      run.move(run.flow.step_staged(run.packing.view(), dt, run.dynamics()), dt);
+      EXPECT_LE(run.energy(), last) << ratio << ' ' << step;
+      last = run.energy();
+    }
   }
 }
 
-/// Spheres that overlap by most of their radii: S is far from a transpose of E there, and the fluid feeds
-/// energy to motions at any time step.
-struct Feeding {
+/// Spheres that overlap by most of their radii.
+struct Overlapping {
   PackingArrays packing = ::support::packing_of(
       {{0.6377, 0.1333, 0.7586, 0.2961}, {0.6431, 0.1482, 0.7321, 0.2363},
        {0.5018, 0.123, 0.8088, 0.0464}, {0.4895, 0.1208, 0.819, 0.016},
@@ -133,53 +134,36 @@ struct Feeding {
        {0.1724, 0.6001, 0.9317, 0.0014}, {0.7521, 0.7455, 0.4635, 0.2457}});
   Eigen::VectorXd masses = 4e3 * packing.radii.array().cube();
   Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, masses.size());
-  Flow flow{::support::upward_box(Wall::no_slip), ::support::viscosity_one()};
-  double limit;
-
-  Feeding() {
-    packing.velocities = Eigen::Matrix3Xd::Zero(3, masses.size());
-    packing.velocities.row(2) = -0.1 * packing.positions.row(2);
-    flow.evaluate(packing.view());
-    limit = flow.time_step_limit(masses);
-  }
-  GrainDynamics dynamics() const {
-    return {{masses.data(), masses.size()}, {none.data(), 3, none.cols()}};
-  }
 };
 
-TEST(StagedStep, ThatGoesOutOfControlIsRefusedAndTheImplicitOneTakesItsPlace) {
-  Feeding grains;
-  const double dt = 23.0 * grains.limit;
-  try {
-    grains.flow.step_staged(grains.packing.view(), dt, grains.dynamics());
-    FAIL() << "not refused";
-  } catch (const UnstableStep& error) {
-    ::support::expect_line(error.what(), "23 limits");
-    ::support::expect_line(error.what(), "sphere 7");
-    ::support::expect_line(error.what(), "implicit");
-  }
-  EXPECT_EQ(grains.flow.time(), 0.0);
-  grains.flow.step_implicit(grains.packing.view(), dt, grains.dynamics());
-  EXPECT_EQ(grains.flow.time(), dt);
-  // the imposed 1 Pa and the grains' own inertia
-  EXPECT_LT(grains.flow.pore_pressures().cwiseAbs().maxCoeff(), 1.6);
-  EXPECT_LT(std::abs(grains.flow.report().mass_error), 1e-9);
-}
-
-TEST(StagedStep, OfTheSamePackingKeepsItsBoundAtTenLimits) {
-  Feeding grains;
-  grains.flow.step_staged(grains.packing.view(), 10.0 * grains.limit, grains.dynamics());
-  EXPECT_GT(grains.flow.stages(), 1);
-}
-
-TEST(StagedStep, WhereTheTransposeOfTheVolumeRatesIsMuchStrongerThanSIsRefused) {
-  Feeding grains;
-  try {
-    grains.flow.step_staged(grains.packing.view(), 1e3 * grains.limit, grains.dynamics());
-    FAIL() << "not refused";
-  } catch (const UnstableStep& error) {
-    ::support::expect_line(error.what(), "overlap");
-    ::support::expect_line(error.what(), "implicit");
+// With the papers' volume rates the fluid drove these on at any time step.
+TEST(StagedStep, OverlapsByMostOfTheRadiiAreBraked) {
+  for (const double ratio : {23.0, 1000.0}) {
+    Overlapping grains;
+    Flow flow(::support::pressure_box(Face::zlo, 0.0, Face::zhi, 0.0, Wall::no_slip),
+              ::support::viscosity_one());
+    Eigen::Matrix3Xd& v = grains.packing.velocities;
+    v = Eigen::Matrix3Xd::Zero(3, grains.masses.size());
+    v.row(2) = -1e-9 * grains.packing.positions.row(2);
+    grains.packing.angular_velocities = grains.none;
+    flow.evaluate(grains.packing.view());
+    const double dt = ratio * flow.time_step_limit(grains.masses);
+    const auto energy = [&] {
+      return (grains.masses.array() * v.colwise().squaredNorm().transpose().array()).sum();
+    };
+    const double start = energy();
+    for (int step = 0; step < 20; ++step) {
+      const Forces& forces = flow.step_staged(
+          grains.packing.view(), dt,
+          {{grains.masses.data(), grains.masses.size()}, {grains.none.data(), 3, grains.none.cols()}});
+      for (int k = 0; k < v.cols(); ++k) {
+        v.col(k) += dt / grains.masses[k] * forces.total.col(k);
+        grains.packing.angular_velocities.col(k) +=
+            dt / (0.4 * grains.masses[k] * std::pow(grains.packing.radii[k], 2)) *
+            forces.torque.col(k);
+      }
+    }
+    EXPECT_LT(energy(), 1.001 * start) << ratio;
   }
 }
 
@@ -220,8 +204,8 @@ TEST(StagedStep, FirstOrderTowardsTheFineExplicitSolution) {
     const double limit = run.limit();
     for (int step = 0; step < static_cast<int>(std::lround(4.0 / ratio)); ++step) {
       const double dt = ratio * limit;
-      run.move(staged ? run.flow.step_staged(run.packing.view(), dt, run.dynamics()).total
-                      : run.flow.step(run.packing.view(), dt).total,
+      run.move(staged ? run.flow.step_staged(run.packing.view(), dt, run.dynamics())
+                      : run.flow.step(run.packing.view(), dt),
                dt);
     }
     return run.packing.velocities;

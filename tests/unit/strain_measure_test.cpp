@@ -2,9 +2,9 @@
 // Which strain of the pores leads to a new network.
 #include "coupling/built_network.hpp"
 #include "pfv/pfv.hpp"
-#include "physics/volume_rates.hpp"
 #include "support/boxes.hpp"
 #include "support/drained_piston.hpp"
+#include "support/motions.hpp"
 #include "support/stages.hpp"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ TEST(StrainMeasure, MeanIsTheSumOfAllChangesOverTheSumOfAllVolumes) {
   Piston piston;
   piston.sink(1.0);
   const Stages s = stages_of(piston.packing, piston.box);
-  const Eigen::VectorXd rates = pfv::volume_rates(pfv::volume_rate_matrix(s.network, s.spheres),
-                                                  piston.packing.velocities, piston.box);
+  const Eigen::VectorXd rates =
+      reciprocal_rates(s, motion_of(piston.packing.velocities, piston.box));
   double volume = 0.0;
   for (const double one : pfv::strain_volumes(s.network, s.throats, s.spheres)) volume += one;
   pfv::Flow flow = piston.flow(pfv::StrainMeasure::mean);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Limit of the explicit coupling: dt < 2 / lambda_max(M^-1 S G^-1 E).
+// Limit of the explicit coupling: dt < 2 / lambda_max(M^-1 S G^-1 S^T).
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
@@ -18,10 +18,15 @@ struct Sample {
   pfv::Flow flow{pressure_box(pfv::Face::zlo, 0.0, pfv::Face::zhi, 0.0, pfv::Wall::symmetry),
                  viscosity_one()};
 
-  Eigen::Matrix3Xd forces(const Eigen::Matrix3Xd& velocities) {
+  Eigen::VectorXd inertias = 0.4 * masses.array() * packing.radii.array().square();
+
+  const pfv::Forces& forces(const Eigen::Matrix3Xd& velocities, const Eigen::Matrix3Xd& spins) {
     packing.velocities = velocities;
-    return flow.evaluate(packing.view()).total;
+    packing.angular_velocities = spins;
+    return flow.evaluate(packing.view());
   }
+  Eigen::Matrix3Xd zeros() const { return Eigen::Matrix3Xd::Zero(3, masses.size()); }
+  const pfv::Forces& at_rest() { return forces(zeros(), zeros()); }
 };
 
 /// Speed after 2000 explicit steps of m dv/dt = F(v), over that at the start.
@@ -29,17 +34,21 @@ double growth(Sample& sample, double dt) {
   Random random(1);
   Eigen::Matrix3Xd v(3, sample.masses.size());
   for (int k = 0; k < v.cols(); ++k) v.col(k) = random.in_cube();
+  Eigen::Matrix3Xd spin = sample.zeros();
   const double start = v.norm();
   for (int step = 0; step < 2000 && v.norm() < 1e6 * start; ++step) {
-    const Eigen::Matrix3Xd f = sample.forces(v);
-    for (int k = 0; k < v.cols(); ++k) v.col(k) += dt / sample.masses[k] * f.col(k);
+    const pfv::Forces& f = sample.forces(v, spin);
+    for (int k = 0; k < v.cols(); ++k) {
+      v.col(k) += dt / sample.masses[k] * f.total.col(k);
+      spin.col(k) += dt / sample.inertias[k] * f.torque.col(k);
+    }
   }
   return v.norm() / start;
 }
 
 TEST(TimeStepLimit, SeparatesDecayFromGrowth) {
   Sample sample;
-  sample.forces(Eigen::Matrix3Xd::Zero(3, sample.masses.size()));
+  sample.at_rest();
   const double limit = sample.flow.time_step_limit(sample.masses);
   EXPECT_LT(growth(sample, 0.95 * limit), 1.0);
   EXPECT_GT(growth(sample, 1.2 * limit), 1e5);
@@ -49,13 +58,15 @@ TEST(TimeStepLimit, SeparatesDecayFromGrowth) {
 TEST(TimeStepLimit, IsThatOfTheOperatorsLargestEigenvalueFromBelow) {
   Sample sample;
   const auto n = static_cast<int>(sample.masses.size());
-  Eigen::MatrixXd drag(3 * n, 3 * n);
-  for (int c = 0; c < 3 * n; ++c) {
-    Eigen::Matrix3Xd v = Eigen::Matrix3Xd::Zero(3, n);
-    v(c % 3, c / 3) = 1.0;
-    Eigen::Matrix3Xd a = -sample.forces(v);
-    for (int k = 0; k < n; ++k) a.col(k) /= sample.masses[k];
-    drag.col(c) = a.reshaped();
+  Eigen::MatrixXd drag(6 * n, 6 * n);
+  for (int c = 0; c < 6 * n; ++c) {
+    Eigen::Matrix3Xd motion[2] = {sample.zeros(), sample.zeros()};
+    motion[c / (3 * n)](c % 3, c / 3 % n) = 1.0;
+    const pfv::Forces& f = sample.forces(motion[0], motion[1]);
+    for (int k = 0; k < n; ++k) {
+      drag.block<3, 1>(3 * k, c) = -f.total.col(k) / sample.masses[k];
+      drag.block<3, 1>(3 * (n + k), c) = -f.torque.col(k) / sample.inertias[k];
+    }
   }
   const double largest = drag.eigenvalues().cwiseAbs().maxCoeff();
   const double limit = sample.flow.time_step_limit(sample.masses);
@@ -65,7 +76,7 @@ TEST(TimeStepLimit, IsThatOfTheOperatorsLargestEigenvalueFromBelow) {
 
 TEST(TimeStepLimit, GoesWithTheMassesAndWithOneOverTheViscosity) {
   Sample sample;
-  sample.forces(Eigen::Matrix3Xd::Zero(3, sample.masses.size()));
+  sample.at_rest();
   const double limit = sample.flow.time_step_limit(sample.masses);
   EXPECT_EQ(sample.flow.time_step_limit(sample.masses), limit);
   EXPECT_NEAR(sample.flow.time_step_limit(4.0 * sample.masses) / limit, 4.0, 1e-12);
@@ -88,7 +99,7 @@ TEST(TimeStepLimit, IsInfiniteWhereNothingIsUnknown) {
 
 TEST(TimeStepLimit, LeavesTheResultsOfTheLastCallAlone) {
   Sample sample;
-  const Eigen::Matrix3Xd before = sample.forces(-sample.packing.positions);
+  const Eigen::Matrix3Xd before = sample.forces(-sample.packing.positions, sample.zeros()).total;
   sample.flow.time_step_limit(sample.masses);
   EXPECT_TRUE(sample.flow.forces().total == before);
   EXPECT_EQ(sample.flow.report().mass_error, sample.flow.report().mass_error);

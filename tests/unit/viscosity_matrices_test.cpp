@@ -56,8 +56,9 @@ TEST(ViscosityMatrices, AreTheForcesOnASphereThatMovesAlone) {
   }
 }
 
-// With all other masses infinite the operator of the power iteration is V/M of the one that is free.
-// The iteration comes from below, is raised by 3 %, and ends when it changes by less than 0.1 %.
+// With all other masses infinite the operator of the power iteration is that of the one that is free; its spin
+// lowers the limit of its velocity alone by up to 2 %. The iteration comes from below, is raised by 3 %, and
+// ends when it changes by less than 0.1 %.
 TEST(ViscosityMatrices, GiveTheTrueLimitOfAPackingWhereOneSphereIsFree) {
   const auto packing = data_packing("packing_100.csv");
   pfv::Flow flow(open_box(), viscosity_one());
@@ -68,32 +69,23 @@ TEST(ViscosityMatrices, GiveTheTrueLimitOfAPackingWhereOneSphereIsFree) {
     masses[free] = 2.5;
     const double alone = pfv::viscous_time_step(2.5, flow.viscosity_matrices({free})[0]);
     const double ratio = flow.time_step_limit(masses) / alone;
-    EXPECT_GT(ratio, 0.999 / 1.03);
+    EXPECT_GT(ratio, 0.98 * 0.999 / 1.03);
     EXPECT_LT(ratio, 0.985);
   }
 }
 
-// S is not the transpose of E, so that V is not quite symmetric and, for a sphere at an open face that
-// hardly anything resists in one direction (99), not quite positive: -0.2 % of its largest eigenvalue.
-TEST(ViscosityMatrices, BrakeInNearlyEachDirectionAndAreNearlySymmetric) {
-  const auto packing = data_packing("packing_100.csv");
-  std::vector<double> uneven;
-  int feeding = 0;
-  for (const Eigen::Matrix3d& v : matrices(packing, open_box(), viscosity_one())) {
-    const Eigen::Matrix3d even = 0.5 * (v + v.transpose());
-    const Eigen::Vector3d drags = even.selfadjointView<Eigen::Lower>().eigenvalues();
-    EXPECT_GT(drags.minCoeff(), -0.002 * drags.maxCoeff());
-    feeding += drags.minCoeff() <= 0.0;
-    uneven.push_back((v - even).norm() / even.norm());
-  }
-  EXPECT_LE(feeding, 1);
-  std::sort(uneven.begin(), uneven.end());
-  EXPECT_LT(uneven[50], 0.02);    // 1.7 %
-  EXPECT_LT(uneven.back(), 0.15);  // 13.8 %
+TEST(ViscosityMatrices, BrakeInEachDirectionAndAreSymmetric) {
+  for (const auto& packing : {data_packing("packing_100.csv"), random_packing(150, 0.02, 0.1, 8)})
+    for (const Eigen::Matrix3d& v : matrices(packing, open_box(), viscosity_one())) {
+      const Eigen::Matrix3d even = 0.5 * (v + v.transpose());
+      const Eigen::Vector3d drags = even.selfadjointView<Eigen::Lower>().eigenvalues();
+      EXPECT_GT(drags.minCoeff(), 0.0);
+      EXPECT_LT((v - even).norm(), 1e-12 * even.norm());
+    }
 }
 
-// What keeps a grain that touches nothing from being driven on (doc/stability.md): in the direction that
-// resists least, the 100 grains feel 1.8 times Stokes' drag 3 pi mu d at least, the 500 1.1 times.
+// In the direction that resists least, the 100 grains feel 1.8 times Stokes' drag 3 pi mu d at least, the 500
+// 1.1 times.
 TEST(ViscosityMatrices, ShearForcesBrakeInEachDirection) {
   pfv::Options options;
   options.shear_viscous = true;

@@ -6,6 +6,7 @@
 #include "physics/cell_volumes.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
+#include "support/motions.hpp"
 #include "support/stages.hpp"
 
 #include <gtest/gtest.h>
@@ -13,10 +14,6 @@
 namespace {
 
 using namespace support;
-
-Eigen::VectorXd rates(const Stages& s, const Eigen::Matrix3Xd& velocities, const pfv::Box& box) {
-  return pfv::volume_rates(pfv::volume_rate_matrix(s.network, s.spheres), velocities, box);
-}
 
 Eigen::VectorXd volumes(const Stages& s) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(s.network.pores());
@@ -58,7 +55,7 @@ TEST(VolumeRates, UniformStretchGivesItsTraceTimesEachVolume) {
   Eigen::Matrix3Xd velocities(3, s.spheres.size());
   for (int k = 0; k < s.spheres.size(); ++k)
     velocities.col(k) = velocity(box.lower + s.spheres.centres.col(k));
-  const Eigen::VectorXd rate = rates(s, velocities, moving), volume = volumes(s);
+  const Eigen::VectorXd rate = geometric_rates(s, velocities, moving), volume = volumes(s);
   for (int p = 0; p < s.network.pores(); ++p)
     EXPECT_NEAR(rate[p], stretch.sum() * volume[p], 1e-14);
   EXPECT_NEAR(rate.sum() / (stretch.sum() * box.volume()), 1.0, 1e-12);
@@ -71,7 +68,7 @@ TEST(VolumeRates, AffineFieldGivesItsTraceTimesTheVolumeOfInnerCells) {
   a << 0.3, 1.2, -0.4, 0.9, -0.5, 0.2, -1.1, 0.6, 0.8;
   const Eigen::Matrix3Xd velocities =
       (a * s.spheres.centres).colwise() + Eigen::Vector3d(1.0, -2.0, 0.5);
-  const Eigen::VectorXd rate = rates(s, velocities, pfv::Box{});
+  const Eigen::VectorXd rate = geometric_rates(s, velocities, pfv::Box{});
   int inner = 0;
   for (int c = 0; c < s.network.cells(); ++c) {
     const auto& cell = s.network.cell_vertices[c];
@@ -89,11 +86,11 @@ TEST(VolumeRates, SumIsTheRateOfTheBoxForAnyMotionOfTheGrains) {
   Eigen::Matrix3Xd velocities(3, s.spheres.size());
   for (int k = 0; k < s.spheres.size(); ++k) velocities.col(k) = random.in_cube();
   pfv::Box box;
-  EXPECT_NEAR(rates(s, velocities, box).sum(), 0.0, 1e-13);
+  EXPECT_NEAR(geometric_rates(s, velocities, box).sum(), 0.0, 1e-13);
   box[pfv::Face::xlo].velocity = -0.25;
   box[pfv::Face::yhi].velocity = -0.5;
   box[pfv::Face::zhi].velocity = 0.125;
-  EXPECT_NEAR(rates(s, velocities, box).sum(), 0.25 - 0.5 + 0.125, 1e-13);
+  EXPECT_NEAR(geometric_rates(s, velocities, box).sum(), 0.25 - 0.5 + 0.125, 1e-13);
 }
 
 /// `spheres` with vertex v displaced along an axis; a wall is displaced along its own axis.
@@ -136,7 +133,7 @@ TEST(VolumeRates, GradientsAreTheFiniteDifferencesOfEveryKindOfCell) {
 
 TEST(BaseAreas, FillEachFaceWithBothPoresOfAnEdge) {
   const Stages s = stages_of(data_packing("packing_100.csv"), pfv::Box{});
-  const auto areas = pfv::base_areas(s.network, s.boundaries, s.spheres);
+  const auto areas = bases_of(s).area;
   std::array<double, 6> sum{};
   for (std::size_t c = 0; c < areas.size(); ++c) sum[s.boundaries.contacts[c].face] += areas[c];
   for (const double area : sum) EXPECT_NEAR(area, 1.0, 1e-14);

@@ -55,6 +55,10 @@ struct FaceCondition {
   Wall wall = Wall::no_slip;
   Boundary boundary;
   double velocity = 0.0;  ///< m/s along the face's axis, positive along +axis
+  // in its own plane: a no-slip wall takes the fluid beside it along; nothing else feels it
+  Eigen::Vector3d sliding = Eigen::Vector3d::Zero();  ///< m/s, 0 along the axis
+  double spin = 0.0;                                  ///< rad/s about +axis, by the right-hand rule
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();    ///< a point that the spin leaves in place, m
 };
 
 /// A rectangle on a face with a boundary of its own, for instance an outlet. It takes the pores whose

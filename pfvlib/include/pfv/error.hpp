@@ -42,13 +42,6 @@ class SolverError : public Error {
   using Error::Error;
 };
 
-/// A staged step went beyond what its stages can do with forces that brake: the fluid feeds energy to the
-/// grains. The flow is as before the step, which may be taken again, shorter or as an implicit one.
-class UnstableStep : public SolverError {
- public:
-  using SolverError::SolverError;
-};
-
 /// A file could not be written. Exit status 1 of `pfv`.
 class FileError : public Error {
  public:

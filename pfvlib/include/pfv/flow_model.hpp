@@ -21,6 +21,7 @@ struct Forces {
   Eigen::Matrix3Xd total;     ///< pressure + viscous + buoyancy
   Eigen::Matrix3Xd pressure;  ///< with buoyancy; empty unless Options::split_forces
   Eigen::Matrix3Xd viscous;   ///< empty unless Options::split_forces
+  Eigen::Matrix3Xd torque;    ///< N m about the centres; empty where forces act at the centres
   Eigen::VectorXd sphere_pressure;  ///< Pa, mean over the sphere's surface; empty unless
                                     ///< Options::sphere_pressure; 0 for hidden and left-out spheres
 };
@@ -31,8 +32,7 @@ struct FlowState {
   double strain = 0.0;                     ///< accumulated since the last triangulation
   std::int64_t retriangulations = 0;       ///< triangulations after the first
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
-  std::vector<double> lag_level;           ///< Pa, likewise: what long steps remember of the last
-  std::vector<double> lag_delayed;         ///< pressures and of those before; empty without long steps
+  double volume_debt = 0.0;                ///< m³ that implicit steps still owe the pores
 };
 
 /// A face that moves freely along its axis: a piston. By default its velocity is prescribed.
@@ -48,6 +48,9 @@ struct GrainDynamics {
                                                          ///< is prescribed (frozen, moved by force)
   Eigen::Map<const Eigen::Matrix3Xd> other_forces{nullptr, 3, 0};  ///< N: contacts, gravity, ...
   std::array<Piston, 6> pistons{};  ///< in the order xlo ... zhi
+  Eigen::Map<const Eigen::Matrix3Xd> other_torques{nullptr, 3, 0};  ///< N m; empty: none
+  Eigen::Map<const Eigen::VectorXd> inertias{nullptr, 0};  ///< kg m²; empty: 2/5 m r²; infinite: a grain that
+                                                           ///< keeps its spin
 };
 
 /// A fluid between moving grains, as a host program sees it: grains in, forces out. `Flow` (pore-scale
@@ -81,16 +84,12 @@ class FlowModel {
   /// Sub-stages of the last step.
   virtual int stages() const = 0;
 
-  /// The same advance at any dt for one solve with the denser matrix A = G + theta dt E M^-1 E^T:
+  /// The same advance at any dt for one solve with the denser matrix A = G + theta dt S^T M^-1 S:
   /// pressures and the velocities that follow from all forces are found together (theta method).
   /// Continuity holds exactly for v(n+1/2) + theta (v(n+3/2) - v(n+1/2)), so that over many steps the
-  /// volumes of fluid and grains go together; theta is 2/3 up to 30 limits of the explicit coupling in a
-  /// step and goes to 1 beyond. The forces are E^T p + (S - E^T) q, where q is what the pressures of the
-  /// last steps lead one to expect (level and trend); beyond 20 limits q takes less of the trend, beyond
-  /// 30 it follows more slowly. A new network takes them over, and the first step finds its own by
-  /// four more solves. Stable where the contacts are. What `grains` says of masses and forces must be
-  /// what the host integrates; A is factored anew when a mass or dt changes. Throws InputError for a
-  /// model that has no such step.
+  /// volumes of fluid and grains go together. Stable where the contacts are. What `grains` says of masses and
+  /// forces must be what the host integrates; A is factored anew when a mass or dt changes. Throws InputError
+  /// for a model that has no such step.
   virtual const Forces& step_implicit(const Packing& packing, double dt, const GrainDynamics& grains);
   /// The same without advancing anything: the setup of a run.
   virtual const Forces& evaluate_implicit(const Packing& packing, double dt,

@@ -11,8 +11,8 @@
 
 namespace pfv {
 
-/// Reads a packing: CSV with header `id,x,y,z,radius[,vx,vy,vz]`, or a LIGGGHTS text dump (the last
-/// snapshot, refused where it is cut off; columns id, x, y, z, radius, and vx, vy, vz if present, in
+/// Reads a packing: CSV with header `id,x,y,z,radius[,vx,vy,vz][,omegax,omegay,omegaz]`, or a LIGGGHTS text dump (the last
+/// snapshot, refused where it is cut off; columns id, x, y, z, radius, and vx, vy, vz, omegax, omegay, omegaz if present, in
 /// any order).
 /// Throws InputError naming file, line and field.
 PackingArrays read_packing(const std::string& path);

@@ -27,8 +27,15 @@ enum class Precision { full, mixed };
 
 /// How a throat's domain is parted among pores and spheres. `signed_angles`: signed volumes and solid
 /// angles, whose sums are the pore volume and the solid surface. `yade`: the rules of YADE's FlowEngine,
-/// to reproduce its results; refused with the open-throat law, which counts on signed volumes.
+/// to reproduce its results, with geometric volume rates; refused with the open-throat law, which counts on
+/// signed volumes, and with reciprocal rates.
 enum class Partition { signed_angles, yade };
+
+/// How the velocities of grains and faces change the pores' volumes. `reciprocal`: by S^T, the transpose of the
+/// forces, as Stokes flow demands; forces then have moments about the grains' centres, and spins move fluid.
+/// `geometric`: by the papers' E = dV/dx, with forces at the centres; explicit steps only. It feeds some
+/// motions of grains of unlike size (doc/method.md).
+enum class VolumeRates { reciprocal, geometric };
 
 /// What to do with a grain whose centre is not inside the flow box.
 enum class OutsideGrains { refuse, leave_out };
@@ -43,6 +50,7 @@ constexpr double default_tolerance = 1e-10;
 struct Options {
   ConductanceLaw conductance = ConductanceLaw::open_throat;
   Partition partition = Partition::signed_angles;
+  VolumeRates volume_rates = VolumeRates::reciprocal;
   SolverKind solver = SolverKind::automatic;
   OrderingKind ordering = OrderingKind::automatic;
   Precision precision = Precision::full;
@@ -79,10 +87,12 @@ const char* name_of(SolverKind solver);
 const char* name_of(OrderingKind ordering);
 const char* name_of(Precision precision);
 const char* name_of(StrainMeasure measure);
+const char* name_of(VolumeRates rates);
 ConductanceLaw conductance_law_named(const std::string& name);
 Partition partition_named(const std::string& name);
 SolverKind solver_named(const std::string& name);
 OrderingKind ordering_named(const std::string& name);
 Precision precision_named(const std::string& name);
+VolumeRates volume_rates_named(const std::string& name);
 
 }  // namespace pfv

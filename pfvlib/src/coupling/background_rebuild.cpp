@@ -33,7 +33,7 @@ struct Task {
       factor_pressures(*result.network, settings, step, cost);
       if (moving) {
         const PhaseClock clock(result.seconds.assemble);
-        make_volume_rates(*result.network);
+        make_volume_rates(*result.network, options, *alone, result.counts);
       }
       if (options.forces) {
         const PhaseClock clock(result.seconds.forces);
@@ -48,7 +48,7 @@ struct Task {
 
 BackgroundRebuild::BackgroundRebuild(const Packing& packing, const BuildSettings& settings,
                                      double step, bool moving) {
-  Task task{{packing.ids, packing.positions, packing.radii, Eigen::Matrix3Xd(3, 0)},
+  Task task{{packing.ids, packing.positions, packing.radii},
             settings.box,
             settings.fluid,
             settings.options,

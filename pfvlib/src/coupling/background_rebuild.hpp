@@ -11,7 +11,7 @@ namespace pfv {
 /// needs of it. It shares nothing with its maker; its destructor waits for the thread.
 class BackgroundRebuild {
  public:
-  /// `step`, s: as for factor_pressures. `moving`: make E too. Throws SolverError where no thread
+  /// `step`, s: as for factor_pressures. `moving`: make what volume rates need, too. Throws SolverError where no thread
   /// can be started.
   BackgroundRebuild(const Packing& packing, const BuildSettings& settings, double step,
                     bool moving);

@@ -29,13 +29,13 @@ std::vector<double> contact_inflows(const FlowData& flow, const Eigen::VectorXd&
     std::size_t last = first;
     double area = 0.0;
     for (; last < contacts.size() && contacts[last].pore == contacts[first].pore; ++last)
-      if (carries(contacts[last])) area += flow.built->base_area[last];
+      if (carries(contacts[last])) area += flow.built->bases.area[last];
     // a pore on several open faces: by its base on each
     for (std::size_t c = first; c < last; ++c) {
       if (!carries(contacts[c])) continue;
       if (contacts[c].face == PoreBoundaries::inside) result[c] = inflow[contacts[c].pore];
       else if (area > 0.0)
-        result[c] = inflow[contacts[c].pore] * flow.built->base_area[c] / area;
+        result[c] = inflow[contacts[c].pore] * flow.built->bases.area[c] / area;
     }
     first = last;
   }
@@ -79,9 +79,7 @@ Totals boundary_totals(const FlowData& flow, const std::vector<double>& inflows)
 /// displace: fluxes below the machine precision of this are round-off, not flow.
 double traffic(const FlowData& flow) {
   const PoreNetwork& network = flow.built->network;
-  double sum = flow.built->volume_rate_matrix
-                   ? gross_volume_rate(*flow.built->volume_rate_matrix, flow.rated_motion())
-                   : 0.0;
+  double sum = gross_rate(*flow.built, flow.motion);
   for (int t = 0; t < network.throats(); ++t)
     sum += flow.built->conductances.value[t] *
            (std::abs(flow.relative_pressures[network.throat_pores[t][0]]) +
@@ -104,10 +102,10 @@ Eigen::Vector3d driving_force(const FlowData& flow) {
 }
 
 double force_balance_error(const FlowData& flow, const std::array<FaceResult, 6>& faces) {
-  if (flow.fluid_forces.cols() == 0) return 0.0;
+  if (flow.loads.cols() == 0) return 0.0;
   const int spheres = flow.built->grains.spheres.size();
   const Eigen::Vector3d driven = driving_force(flow);
-  Eigen::Vector3d sum = driven + flow.fluid_forces.leftCols(spheres).rowwise().sum();
+  Eigen::Vector3d sum = driven + flow.loads.topLeftCorner(3, spheres).rowwise().sum();
   for (const FaceResult& face : faces) sum += face.force_pressure + face.force_viscous;
   const double largest_pressure =
       flow.pressures.size() > 0 ? flow.pressures.cwiseAbs().maxCoeff() : 0.0;
@@ -140,13 +138,14 @@ std::array<FaceResult, 6> face_forces(const FlowData& flow) {
   for (std::size_t c = 0; c < contacts.size(); ++c)
     if (contacts[c].face != PoreBoundaries::inside)
       relative[contacts[c].face] +=
-          flow.relative_pressures[contacts[c].pore] * flow.built->base_area[c];
-  const Eigen::Vector3d edges = flow.built->grains.spheres.edges;
+          flow.relative_pressures[contacts[c].pore] * flow.built->bases.area[c];
+  const Eigen::Vector3d on_growth = flow.forces_on_growth();
   for (const Face face : all_faces) {
-    const int f = static_cast<int>(face), axis = axis_of(face);
-    const double area = edges[(axis + 1) % 3] * edges[(axis + 2) % 3];
-    faces[f].force_pressure = (relative[f] + flow.reference * area) * outward_normal(face);
-    if (flow.fluid_forces.cols() > 0) faces[f].force_viscous = flow.fluid_forces.col(spheres + f);
+    const int f = static_cast<int>(face);
+    faces[f].force_pressure = (relative[f] + on_growth[axis_of(face)] +
+                               flow.reference * flow.solved_box.area(face)) *
+                              outward_normal(face);
+    if (flow.loads.cols() > 0) faces[f].force_viscous = flow.loads.col(spheres + f).head<3>();
   }
   return faces;
 }

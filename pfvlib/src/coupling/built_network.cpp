@@ -55,16 +55,26 @@ Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built) {
   return places;
 }
 
-Eigen::Matrix3Xd forces_with_faces(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
-  Eigen::Matrix3Xd forces = multiply(*built.force_matrix, pressures);
-  const auto& contacts = built.boundaries.contacts;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (contacts[c].face == PoreBoundaries::inside) continue;
-    forces.col(built.grains.spheres.size() + contacts[c].face) +=
-        pressures[contacts[c].pore] * built.base_area[c] *
-        outward_normal(static_cast<Face>(contacts[c].face));
-  }
-  return forces;
+Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
+  Loads loads = multiply(*built.force_matrix, pressures);
+  const Bases& bases = built.bases;
+  for (int b = 0; b < bases.size(); ++b)
+    if (bases.face[b] >= 0)
+      loads.col(spheres_in(loads) + bases.face[b]) += pressures[bases.pore[b]] * bases.load(b);
+  return loads;
+}
+
+void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates) {
+  rates.resize(built.network.pores());
+  if (built.geometric_rates)
+    volume_rates(*built.geometric_rates, motion, team, rates);
+  else
+    reciprocal_rates(*built.force_matrix, built.entries_by_pore, built.bases, motion, team, rates);
+}
+
+double gross_rate(const BuiltNetwork& built, const Motion& motion) {
+  if (built.geometric_rates) return gross_rate(*built.geometric_rates, motion);
+  return built.force_matrix ? gross_rate(*built.force_matrix, built.bases, motion) : 0.0;
 }
 
 Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources) {

@@ -16,15 +16,16 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace pfv {
 
-/// What implicit steps need besides E^T.
+/// What implicit steps need besides S.
 struct ImplicitFactor {
   ImplicitSystem system;
   std::unique_ptr<LinearSolver> solver;
-  Eigen::RowVectorXd yielding;  ///< dt/m of the grains and the six faces whose A is in the factor
+  Matrix6Xd yielding;  ///< `yielding` of the grains and the six faces whose A is in the factor
 };
 
 /// From where to where each cell reaches along an axis, m.
@@ -41,7 +42,7 @@ struct BuiltNetwork {
   PoreBoundaries boundaries;
   Throats throats;
   Conductances conductances;
-  std::vector<double> base_area;  ///< one entry a boundary contact
+  Bases bases;  ///< one entry a boundary contact
   Unknowns unknowns;
   PressureSystem system;
   std::unique_ptr<LinearSolver> solver;
@@ -50,16 +51,17 @@ struct BuiltNetwork {
   double storage_dt = 0.0;  ///< time step whose storage term is in the factor
   std::optional<bool> loses_digits;  ///< whether its solves need refinement; unknown before the first
 
-  std::optional<VolumeRateMatrix> volume_rate_matrix;
+  std::optional<VolumeRateMatrix> geometric_rates;  ///< E; only where it is wanted
+  EntriesByPore entries_by_pore;  ///< of the force matrix, where several threads share it
   ViscousShares viscous_shares;  ///< made with the force matrix
   std::optional<ForceMatrix> force_matrix;
   std::optional<ForceMatrix> pressure_force_matrix;
-  std::optional<ForceMatrix> energy_forces;  ///< E^T
+  std::optional<std::pair<Eigen::Vector3d, Loads>> gradient_loads;  ///< for that macroscopic gradient
   std::optional<SurfacePressure> surface_pressure;
   std::optional<std::vector<ShearPair>> shear_pairs;
   std::optional<SolidUnion> solid;
   std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis
-  std::optional<double> time_step_limit, stage_limit;  ///< for `limit_masses`
+  std::optional<double> time_step_limit;  ///< for `limit_masses`
   Eigen::VectorXd limit_masses;           ///< of the spheres of the packing and the six faces
   std::optional<ImplicitFactor> implicit;
   std::vector<double> strain_volume;  ///< volume that a pore's strain refers to, bounded below
@@ -68,8 +70,13 @@ struct BuiltNetwork {
 /// A place (m) for each unknown: that of its pore, or of one of those that share it.
 Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built);
 
-/// S p with the pressure on each face: 3 x (active spheres + 6), N.
-Eigen::Matrix3Xd forces_with_faces(const BuiltNetwork& built, const Eigen::VectorXd& pressures);
+/// S p with the pressures on the faces, N and N m.
+Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures);
+
+/// dV/dt of each pore, m³/s, from the network as it was built.
+void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates);
+/// What they are summed from, m³/s.
+double gross_rate(const BuiltNetwork& built, const Motion& motion);
 
 /// Pressures (Pa) that sources (m³/s, one entry a pore) cause on the kept factor where every imposed
 /// pressure is 0.

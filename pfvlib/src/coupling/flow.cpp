@@ -129,7 +129,7 @@ FlowState Flow::state() const {
     return std::vector<double>(values.data(), values.data() + values.size());
   };
   return {data_->time, data_->strain, data_->retriangulations,
-          list(data_->old_pressures), list(data_->lag.level), list(data_->lag.delayed)};
+          list(data_->old_pressures), data_->volume_debt};
 }
 
 void Flow::set_state(FlowState state) {
@@ -137,8 +137,7 @@ void Flow::set_state(FlowState state) {
   data_->strain = state.strain;
   data_->retriangulations = state.retriangulations;
   data_->pending_pressures = std::move(state.pore_pressures);
-  data_->pending_level = std::move(state.lag_level);
-  data_->pending_delayed = std::move(state.lag_delayed);
+  data_->volume_debt = state.volume_debt;
 }
 
 const Forces& Flow::forces() const {

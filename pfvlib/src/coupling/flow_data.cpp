@@ -31,9 +31,12 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     for (const Isolated& isolated : built->system.isolated)
       counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
     stages = 1;
+    unpaid_growth = 0.0;
+    debt_rate = step > 0.0 ? volume_debt / step : 0.0;
     solved_implicitly = coupling == Coupling::implicit;
-    force_lag.resize(0);
-    mean_motion.resize(3, 0);
+    // velocities are those of the step that has ended, or that long steps are about to take
+    measure_grown_areas(coupling == Coupling::explicit_step ? -0.5 * step : 0.5 * step);
+    refuse_geometric(coupling);
     refuse_shear_forces(coupling);
     refuse_lag(coupling);
     const double at_time = advance ? time + step : time;
@@ -58,11 +61,8 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
 
 void FlowData::end_step(double step) {
   time += step;
+  volume_debt = unpaid_growth;
   add_strain(step);
-  if (force_lag.size() > 0)
-    lag.follow(relative_pressures);
-  else
-    lag.forget();
   if (fluid.bulk_modulus) old_pressures = pressures;
 }
 
@@ -92,8 +92,7 @@ void FlowData::rebuild_now(const Packing& packing) {
   next.reset();
   stale = true;
   std::unique_ptr<LinearSolver> solver = built ? std::move(built->solver) : nullptr;
-  const bool carries_over = old_pressures.size() > 0 || !lag.empty();
-  if (!carries_over) built.reset();  // its memory is the new one's
+  if (old_pressures.size() == 0) built.reset();  // its memory is the new one's
   auto fresh = derive_network(packing, build_settings(), {counts, seconds});
   fresh->former_solver = std::move(solver);
   packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
@@ -109,7 +108,7 @@ void FlowData::refuse_lag(Coupling coupling) const {
 }
 
 void FlowData::begin_next(const Packing& packing, double step) {
-  next.emplace(packing, build_settings(), step, built->volume_rate_matrix.has_value());
+  next.emplace(packing, build_settings(), step, moving);
   steps_to_next = options.rebuild_lag;
   strain_before_next = strain;
   changes_before_next = volume_changes;
@@ -127,24 +126,18 @@ void FlowData::take_up_next() {
   take_up(std::move(fresh));
 }
 
-/// Carries over what is kept of the old network: the pressures of a compressible fluid and those
-/// that implicit steps remember.
+/// Carries over the pressures of a compressible fluid.
 void FlowData::take_up(std::unique_ptr<BuiltNetwork> fresh) {
   const std::unique_ptr<BuiltNetwork> old = std::move(built);
   built = std::move(fresh);
   const int pores = built->network.pores();
-  const auto take_over = [&](Eigen::VectorXd& values, std::vector<double>& pending) {
-    if (!pending.empty() && static_cast<int>(pending.size()) == pores)
-      values = Eigen::Map<const Eigen::VectorXd>(pending.data(), pores);
-    else if (old && values.size() > 0 && values.size() == old->network.pores())
-      values = carried_pressures(*old, values, *built);
-    else
-      values.resize(0);
-    pending.clear();
-  };
-  take_over(old_pressures, pending_pressures);
-  take_over(lag.level, pending_level);
-  take_over(lag.delayed, pending_delayed);
+  if (static_cast<int>(pending_pressures.size()) == pores && pores > 0)
+    old_pressures = Eigen::Map<const Eigen::VectorXd>(pending_pressures.data(), pores);
+  else if (old && old_pressures.size() > 0 && old_pressures.size() == old->network.pores())
+    old_pressures = carried_pressures(*old, old_pressures, *built);
+  else
+    old_pressures.resize(0);
+  pending_pressures.clear();
   if (fluid.bulk_modulus && old_pressures.size() == 0) old_pressures.setZero(pores);
   if (options.strain_measure == StrainMeasure::mean) volume_changes.setZero(pores);
   solution.setZero(built->unknowns.count);  // no trace of the old network in what follows
@@ -182,23 +175,36 @@ bool FlowData::is_outdated(const Packing& packing) const {
   return false;
 }
 
+/// Velocities and spins of the active grains and of the faces.
+void FlowData::set_motion(const Packing& packing) {
+  const std::vector<int>& columns = built->grains.columns;
+  motion.setZero(6, static_cast<Eigen::Index>(columns.size()) + 6);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    auto own = motion.col(static_cast<Eigen::Index>(i));
+    if (packing.velocities.cols() > 0) own.head<3>() = packing.velocities.col(columns[i]);
+    if (packing.angular_velocities.cols() > 0)
+      own.tail<3>() = packing.angular_velocities.col(columns[i]);
+  }
+  set_faces(motion, box, built->network.origin);
+}
+
 void FlowData::update_rates(const Packing& packing) {
   moving = !at_rest(packing, box);
   refuse_undetermined(moving);
-  if (moving) {
-    gather_velocities(packing, built->grains.columns, velocities);
-    rates_of(velocities);
-  } else {
+  set_motion(packing);
+  if (moving)
+    find_rates(motion);
+  else
     rates.setZero(built->network.pores());
-  }
   refuse_isolated(built->system.isolated);
 }
 
-void FlowData::rates_of(const Eigen::Matrix3Xd& of_grains) {
+void FlowData::find_rates(const Motion& of) {
   const PhaseClock clock(seconds.assemble);
-  make_volume_rates(*built);
+  make_volume_rates(*built, options, *team, counts);
   ++counts.volume_rate;
-  volume_rates(*built->volume_rate_matrix, of_grains, box, *team, rates);
+  rates_of(*built, of, *team, rates);
+  spread_over_pores(growth_beyond_rates(of) + debt_rate);
 }
 
 /// Fills in the imposed pressures, less their mean: with a large common pressure the balances would
@@ -245,14 +251,16 @@ Eigen::Vector3d FlowData::buoyancy_of(int sphere) const {
   return -fluid.density * 4.0 / 3.0 * pi * r * r * r * fluid.gravity;
 }
 
-/// S p of the active spheres and the walls.
-void FlowData::multiply_forces(const ForceMatrix& matrix, ForceParts parts,
-                               Eigen::Matrix3Xd& result) {
-  multiply(matrix, force_lag.size() > 0 ? force_lag : relative_pressures, *team, result);
-  if (!box.pressure_gradient.isZero(0.0))
-    result += gradient_forces(built->network, built->throats, built->viscous_shares,
-                              built->grains.spheres.size(), parts,
-                              box.pressure_gradient);
+/// What a macroscopic gradient adds to S p.
+const Loads& FlowData::gradient_loads() {
+  auto& kept = built->gradient_loads;
+  if (!kept || kept->first != box.pressure_gradient)
+    kept = {box.pressure_gradient,
+            gradient_forces(built->network, built->vertices, built->throats, built->viscous_shares,
+                            built->grains.spheres.size(),
+                            {true, true, options.volume_rates == VolumeRates::reciprocal},
+                            box.pressure_gradient)};
+  return kept->second;
 }
 
 void FlowData::compute_forces(const Packing& packing) {
@@ -261,23 +269,27 @@ void FlowData::compute_forces(const Packing& packing) {
   const std::vector<int>& columns = built->grains.columns;
   const auto active = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index n = packing.size();
-  const auto spread = [&](const Eigen::Matrix3Xd& from, Eigen::Matrix3Xd& to) {
+  const auto spread = [&](const auto& from, Eigen::Matrix3Xd& to) {
     to.resize(3, n);
     if (active < n) to.setZero();
     for (Eigen::Index i = 0; i < active; ++i) to.col(columns[i]) = from.col(i);
   };
-  multiply_forces(*built->force_matrix, {true, true}, fluid_forces);
+  multiply(*built->force_matrix, relative_pressures, *team, loads);
+  const bool driven = !box.pressure_gradient.isZero(0.0);
+  if (driven) loads += gradient_loads();
+  spread(loads.topRows<3>(), forces.total);
+  if (options.volume_rates == VolumeRates::reciprocal) spread(loads.bottomRows<3>(), forces.torque);
   if (options.split_forces) {
-    Eigen::Matrix3Xd of_pressure;
-    multiply_forces(*built->pressure_force_matrix, {true, false}, of_pressure);
-    spread(fluid_forces - of_pressure, forces.viscous);
+    Loads of_pressure;
+    multiply(*built->pressure_force_matrix, relative_pressures, *team, of_pressure);
+    if (driven)
+      of_pressure += gradient_forces(built->network, built->vertices, built->throats,
+                                     built->viscous_shares, static_cast<int>(active),
+                                     {true, false, false}, box.pressure_gradient);
+    spread(of_pressure.topRows<3>(), forces.pressure);
+    forces.viscous = forces.total - forces.pressure;
   }
-  if (force_lag.size() > 0)  // the work of the change of pressure is that of E^T
-    fluid_forces.leftCols(active) +=
-        multiply(*built->energy_forces, relative_pressures - force_lag).leftCols(active);
-  spread(fluid_forces, forces.total);
-  if (options.split_forces) forces.pressure = forces.total - forces.viscous;
-  if (options.shear_viscous) add_shear_forces(packing);
+  if (options.shear_viscous) add_shear_forces();
   if (options.buoyancy && !fluid.gravity.isZero(0.0)) {
     for (Eigen::Index i = 0; i < active; ++i) {
       const Eigen::Vector3d lift = buoyancy_of(static_cast<int>(i));

@@ -2,11 +2,9 @@
 #pragma once
 
 #include "coupling/background_rebuild.hpp"
-#include "coupling/pressure_lag.hpp"
 #include "physics/chebyshev_stages.hpp"
 #include "pfv/flow.hpp"
 
-#include <functional>
 #include <optional>
 
 namespace pfv {
@@ -23,13 +21,15 @@ struct Balance {
 /// How the forces of a step are found from the velocities of its beginning.
 enum class Coupling { explicit_step, staged, implicit };
 
-/// What the stages of one step integrate; 3 x (active spheres + 6), and one entry each of them.
-struct StagedMotion {
-  std::vector<ChebyshevStage> stages;
-  double ratio;                 ///< of the step to the limit of the explicit coupling
-  Eigen::Matrix3Xd start;       ///< velocities, m/s
-  Eigen::Matrix3Xd held;        ///< forces other than those of the pressures, N
-  Eigen::RowVectorXd per_mass;  ///< dt/m, s/kg
+/// What a staged or implicit step integrates, a column for each active sphere and each face.
+struct ForcedMotion {
+  Motion start;
+  Loads held;          ///< all but those of the pressures less their reference
+  Matrix6Xd yielding;  ///< dt over mass, s/kg, or over inertia, s/(kg m²); 0 for what no force moves
+
+  Motion moved_by(const Loads& loads) const {
+    return start + (yielding.array() * (held + loads).array()).matrix();
+  }
 };
 
 struct Totals;
@@ -64,47 +64,44 @@ struct FlowData {
   double dt = 0.0;
   int stages = 1;
   double reference = 0.0;                ///< pressure that was subtracted before solving, Pa
+  Motion motion;                         ///< that `rates` belong to; of a long step the mean over it
   Eigen::VectorXd rates;                 ///< dV/dt of each pore, m³/s
-  Eigen::Matrix3Xd mean_motion;  ///< over a staged or implicit step, of active spheres and faces; else empty
+  /// What the faces normal to each axis have grown by since the network was built, m²: until the middle
+  /// of the step, and until now.
+  Eigen::Vector3d grown_areas = Eigen::Vector3d::Zero(), grown_areas_now = Eigen::Vector3d::Zero();
+  double volume_debt = 0.0;  ///< what the box has grown by beyond the rates of implicit steps, m³
+  double unpaid_growth = 0.0;  ///< what the last step leaves of it, m³
+  double debt_rate = 0.0;      ///< at which the last step pays it, m³/s
   Eigen::VectorXd old_pressures;         ///< at the last step, of the present pores, Pa
   Eigen::VectorXd previous_pressures;    ///< the old pressures that the last solve started from, Pa
   Eigen::VectorXd relative_pressures;    ///< minus the reference, Pa
   Eigen::VectorXd pressures;             ///< Pa
-  PressureLag lag;            ///< of the last long steps; empty after a plain one
-  Eigen::VectorXd force_lag;  ///< pressures that S acted with in the last call; empty: the present
   Eigen::VectorXd right_side, solution;  ///< of the unknowns
-  Eigen::Matrix3Xd fluid_forces;         ///< S p: 3 x (active spheres + 6), N
+  Loads loads;                           ///< S p
   Forces forces;
   Box solved_box;  ///< the box may be another by the time that a balance is asked for
   std::vector<std::int64_t> packing_ids;
-  /// From set_state, for the next network.
-  std::vector<double> pending_pressures, pending_level, pending_delayed;
+  std::vector<double> pending_pressures;  ///< from set_state, for the next network
 
-  /// Only the explicit step needs no `grains`.
   const Forces& compute(const Packing& packing, double step, bool advance,
                         Coupling coupling = Coupling::explicit_step,
                         const GrainDynamics* grains = nullptr);
   double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
   std::vector<Eigen::Matrix3d> viscosity_matrices(const std::vector<int>& columns);
-  /// The same with E^T in place of S, which the stages take; after `time_step_limit`.
-  double stage_limit();
-  double stage_limit_near(double limit);
   /// The matrix of the last solve.
   const SymmetricMatrix& solved_matrix() const {
     return solved_implicitly ? built->implicit->system.matrix : built->system.matrix;
   }
   void require_result() const;
-  /// Velocities that `rates` belong to, of active spheres and faces.
-  Eigen::Matrix3Xd rated_motion() const;
+  /// Of the relative pressures on what the faces normal to each axis have grown by, N.
+  Eigen::Vector3d forces_on_growth() const;
   /// Throws InputError without a result. Cost: one solve and a pass over the throats, once a call.
   const Balance& balance();
 
  private:
   std::optional<Balance> balance_;
 
-  /// Largest eigenvalue of M^-1 F G^-1 E, 1/s; F: pressures to forces on active spheres and faces.
-  double largest_drag(
-      const std::function<Eigen::Matrix3Xd(const Eigen::VectorXd&)>& forces_of_pressures);
+  double largest_drag();
 
   BuildSettings build_settings() const { return {box, fluid, options, team}; }
   void update_network(const Packing& packing, double step, bool advance);
@@ -115,9 +112,13 @@ struct FlowData {
   void take_up(std::unique_ptr<BuiltNetwork> fresh);
   void refuse_undetermined(bool moving_now) const;
   void refuse_isolated(const std::vector<Isolated>& held) const;
+  void measure_grown_areas(double ahead);
+  void set_motion(const Packing& packing);
   void update_rates(const Packing& packing);
-  void rates_of(const Eigen::Matrix3Xd& of_grains);
-  void rates_of_motion(const Eigen::Matrix3Xd& motion);
+  /// Rates of a motion, which add up to that of the box as it is now.
+  void find_rates(const Motion& of);
+  double growth_beyond_rates(const Motion& of) const;
+  void spread_over_pores(double rate);
   void impose(double at_time);
   void solve_pressures(double at_time, LinearSolver& solver);
   /// Where conductances lie so far apart that a solve on the kept factor loses digits of the pressures
@@ -125,33 +126,29 @@ struct FlowData {
   /// keeps them. Throws SolverError where that does not converge.
   void refine_pressures();
   Eigen::Vector3d buoyancy_of(int sphere) const;
-  void multiply_forces(const ForceMatrix& matrix, ForceParts parts, Eigen::Matrix3Xd& result);
   void compute_forces(const Packing& packing);
   void refuse_shear_forces(Coupling coupling) const;
   void refuse_lag(Coupling coupling) const;
-  void add_shear_forces(const Packing& packing);
-  /// 3 x (active spheres + 6): of these velocities of active spheres and faces; none where switched off.
-  Eigen::Matrix3Xd shear_forces_of(const Eigen::Matrix3Xd& motion) const;
-  Eigen::Matrix3Xd motion_of(const Packing& packing) const;
+  void refuse_geometric(Coupling coupling) const;
+  void add_shear_forces();
+  /// Of this motion; none where switched off.
+  Loads shear_forces_of(const Motion& motion) const;
+  const Loads& gradient_loads();
   void check_dynamics(const GrainDynamics& grains, const Packing& packing) const;
-  Eigen::RowVectorXd yielding(const GrainDynamics& grains, double step) const;
-  Eigen::Matrix3Xd held_forces(const GrainDynamics& grains) const;
-  void find_lag(const std::function<void(const Eigen::VectorXd&)>& solve);
-  void run_recursion(const StagedMotion& staged, double at_time, const Eigen::VectorXd& old);
+  Matrix6Xd yielding(const GrainDynamics& grains, double step) const;
+  Loads held_forces(const GrainDynamics& grains);
+  Loads pressure_loads() const;
   void run_stages(const Packing& packing, double step, double at_time,
                   const GrainDynamics& grains);
-  /// UnstableStep where a staged step changed the velocities beyond its bound; all 3 x (active + 6), m/s.
-  void refuse_feeding(const Eigen::Matrix3Xd& change, const Eigen::Matrix3Xd& explicit_one,
-                      const Eigen::RowVectorXd& per_mass, double ratio) const;
+  void run_recursion(const ForcedMotion& forced, double z, double at_time);
   void run_implicit(const Packing& packing, double step, double at_time,
                     const GrainDynamics& grains);
-  void factor_implicit(const Eigen::RowVectorXd& per_mass);
+  void factor_implicit(const Matrix6Xd& yielding);
   void end_step(double step);
   void add_strain(double step);
   /// Sum of |changes| over sum of volumes.
   double mean_strain(const Eigen::VectorXd& changes) const;
 
-  Eigen::Matrix3Xd velocities;  ///< of the active spheres
   Eigen::VectorXd sources, mean_pressures;
 };
 

@@ -135,8 +135,9 @@ void gather_velocities(const Packing& packing, const std::vector<int>& columns,
 
 bool at_rest(const Packing& packing, const Box& box) {
   for (const FaceCondition& face : box.faces)
-    if (face.velocity != 0.0) return false;
-  return packing.velocities.cols() == 0 || (packing.velocities.array() == 0.0).all();
+    if (face.velocity != 0.0 || face.spin != 0.0 || !face.sliding.isZero(0.0)) return false;
+  return (packing.velocities.array() == 0.0).all() &&
+         (packing.angular_velocities.array() == 0.0).all();
 }
 
 }  // namespace pfv

@@ -23,6 +23,8 @@ ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains
 
 /// Cheap tests of each step.
 bool is_inside(const Packing& packing, Eigen::Index column, const Box& box);
+/// Moment of inertia of a solid sphere, kg m².
+inline double inertia_of(double mass, double radius) { return 0.4 * mass * radius * radius; }
 /// 3 x active spheres; zeros where the packing has none.
 void gather_velocities(const Packing& packing, const std::vector<int>& columns,
                        Eigen::Matrix3Xd& velocities);

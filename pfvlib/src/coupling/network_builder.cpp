@@ -32,7 +32,7 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Build
                                        fresh->throats, spheres, *team);
     for (std::size_t t = 0; t < fresh->throats.conductance_factor.size(); ++t)
       fresh->conductances.value[t] *= fresh->throats.conductance_factor[t];
-    fresh->base_area = base_areas(fresh->network, fresh->boundaries, spheres);
+    fresh->bases = measure_bases(fresh->network, fresh->boundaries, spheres);
     fresh->strain_volume = strain_volumes(fresh->network, fresh->throats, spheres);
   }
   fresh->unknowns = number_unknowns(fresh->network, fresh->boundaries, box);
@@ -45,9 +45,8 @@ void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double
   if (built.solver && (!compressible || step == built.storage_dt)) return;
   const bool new_pattern = !built.solver;
   built.time_step_limit.reset();  // they belong to the factor
-  built.stage_limit.reset();
   built.loses_digits.reset();
-  if (built.implicit) built.implicit->yielding.resize(0);
+  if (built.implicit) built.implicit->yielding.resize(6, 0);
   {
     const PhaseClock clock(cost.seconds.assemble);
     if (compressible)
@@ -75,35 +74,38 @@ void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double
   built.storage_dt = step;
 }
 
-void make_volume_rates(BuiltNetwork& built) {
-  if (!built.volume_rate_matrix)
-    built.volume_rate_matrix = volume_rate_matrix(built.network, built.vertices);
+void make_force_matrix(BuiltNetwork& built, const Options& options, Team& team, Counts& counts) {
+  if (built.force_matrix) return;
+  built.viscous_shares =
+      viscous_shares(options.conductance, built.network, built.throats, built.vertices);
+  const bool moments = options.volume_rates == VolumeRates::reciprocal;
+  built.force_matrix =
+      force_matrix(built.network, built.vertices, built.throats, built.viscous_shares,
+                   built.grains.spheres.size(), {true, true, moments}, team);
+  ++counts.force_matrix;
 }
 
-void make_energy_forces(BuiltNetwork& built) {
-  make_volume_rates(built);
-  if (!built.energy_forces)
-    built.energy_forces =
-        energy_force_matrix(*built.volume_rate_matrix, built.grains.spheres.size());
+void make_volume_rates(BuiltNetwork& built, const Options& options, Team& team, Counts& counts) {
+  if (options.volume_rates == VolumeRates::geometric) {
+    if (!built.geometric_rates)
+      built.geometric_rates = volume_rate_matrix(built.network, built.vertices);
+    return;
+  }
+  make_force_matrix(built, options, team, counts);
+  if (team.threads() > 1 && built.entries_by_pore.begin.empty())
+    built.entries_by_pore = entries_by_pore(*built.force_matrix, built.network.pores());
 }
 
 void make_force_matrices(BuiltNetwork& built, const Options& options, Team& team,
                          Counts& counts) {
-  if (built.force_matrix) return;
-  const int active = built.grains.spheres.size();
-  built.viscous_shares =
-      viscous_shares(options.conductance, built.network, built.throats, built.vertices);
-  built.force_matrix =
-      force_matrix(built.network, built.throats, built.viscous_shares, active, {true, true},
-                   team);
-  ++counts.force_matrix;
-  if (options.split_forces)
+  make_force_matrix(built, options, team, counts);
+  if (options.split_forces && !built.pressure_force_matrix)
     built.pressure_force_matrix =
-        force_matrix(built.network, built.throats, built.viscous_shares, active, {true, false},
-                     team);
-  if (options.shear_viscous)
+        force_matrix(built.network, built.vertices, built.throats, built.viscous_shares,
+                     built.grains.spheres.size(), {true, false, false}, team);
+  if (options.shear_viscous && !built.shear_pairs)
     built.shear_pairs = shear_pairs(built.network, built.throats, built.vertices);
-  if (options.sphere_pressure)
+  if (options.sphere_pressure && !built.surface_pressure)
     built.surface_pressure =
         surface_pressure(built.network, built.vertices, built.grains.spheres);
 }

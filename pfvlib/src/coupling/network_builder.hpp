@@ -37,12 +37,13 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Build
 void factor_pressures(BuiltNetwork& built, const BuildSettings& settings, double step,
                       BuildCost cost);
 
-/// E, where it is not there yet.
-void make_volume_rates(BuiltNetwork& built);
-/// E^T, likewise.
-void make_energy_forces(BuiltNetwork& built);
+/// S, where it is not there yet.
+void make_force_matrix(BuiltNetwork& built, const Options& options, Team& team, Counts& counts);
 
-/// S and what the options want beside, where they are not there yet.
+/// What volume rates need, likewise: S, or E where the options want that.
+void make_volume_rates(BuiltNetwork& built, const Options& options, Team& team, Counts& counts);
+
+/// S and what the options want of the forces beside.
 void make_force_matrices(BuiltNetwork& built, const Options& options, Team& team, Counts& counts);
 
 /// Why a network cannot be factored: where its conductances are the smallest and the largest.

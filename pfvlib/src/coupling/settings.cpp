@@ -39,6 +39,8 @@ constexpr std::array<Named<OrderingKind>, 4> orderings{{{OrderingKind::automatic
                                                         {OrderingKind::amd, "amd"}}};
 constexpr std::array<Named<StrainMeasure>, 2> strain_measures{
     {{StrainMeasure::largest, "largest"}, {StrainMeasure::mean, "mean"}}};
+constexpr std::array<Named<VolumeRates>, 2> volume_rate_operators{
+    {{VolumeRates::reciprocal, "reciprocal"}, {VolumeRates::geometric, "geometric"}}};
 constexpr std::array<Named<Precision>, 2> precisions{
     {{Precision::full, "double"}, {Precision::mixed, "mixed"}}};
 
@@ -203,6 +205,9 @@ const char* name_of(Precision precision) { return name_in(precisions, precision,
 const char* name_of(StrainMeasure measure) {
   return name_in(strain_measures, measure, "strain measure");
 }
+const char* name_of(VolumeRates rates) {
+  return name_in(volume_rate_operators, rates, "volume rates");
+}
 
 ConductanceLaw conductance_law_named(const std::string& name) {
   return value_in(conductance_laws, name, "conductance law");
@@ -217,12 +222,20 @@ OrderingKind ordering_named(const std::string& name) {
 Precision precision_named(const std::string& name) {
   return value_in(precisions, name, "precision");
 }
+VolumeRates volume_rates_named(const std::string& name) {
+  return value_in(volume_rate_operators, name, "volume rates");
+}
 
 void check(const Box& box) {
   for (int axis = 0; axis < 3; ++axis) check_edge(box, axis);
   for (const Face face : all_faces) {
     const std::string where = std::string("face ") + name_of(face);
     require_finite(box[face].velocity, where + ": velocity");
+    require_finite(box[face].spin, where + ": spin");
+    if (!box[face].sliding.allFinite() || !box[face].pivot.allFinite() ||
+        box[face].sliding[axis_of(face)] != 0.0)
+      throw InputError(where + ": its sliding velocity and pivot must be finite, and the sliding velocity "
+                       "has no part along the face's axis; that is `velocity`");
     check(box[face].boundary, where);
   }
   for (std::size_t number = 0; number < box.patches.size(); ++number) check_patch(box, number);
@@ -243,6 +256,7 @@ void check(const Fluid& fluid) {
 void check(const Options& options) {
   name_of(options.conductance);
   name_of(options.partition);
+  name_of(options.volume_rates);
   name_of(options.solver);
   name_of(options.ordering);
   if (options.outside != OutsideGrains::refuse && options.outside != OutsideGrains::leave_out)
@@ -270,6 +284,8 @@ void check(const Options& options) {
       options.conductance == ConductanceLaw::open_throat)
     throw InputError("the yade partition reproduces YADE's results: use it with the conductance law "
                      "hydraulic_radius (or effective_radius), not with open_throat");
+  if (options.partition == Partition::yade && options.volume_rates != VolumeRates::geometric)
+    throw InputError("the yade partition reproduces YADE's results: use it with geometric volume rates");
   if (!options.forces &&
       (options.split_forces || options.sphere_pressure || options.shear_viscous))
     throw InputError("split forces, sphere pressures and shear viscous forces need forces: switch those "

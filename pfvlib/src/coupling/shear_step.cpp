@@ -13,23 +13,23 @@ void FlowData::refuse_shear_forces(Coupling coupling) const {
     throw InputError("shear viscous forces have no implicit step; use the staged coupling");
 }
 
-Eigen::Matrix3Xd FlowData::shear_forces_of(const Eigen::Matrix3Xd& motion) const {
-  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, motion.cols());
+Loads FlowData::shear_forces_of(const Motion& of) const {
+  Loads sum = Loads::Zero(6, of.cols());
+  const Eigen::Index spheres = spheres_in(of);
   if (built->shear_pairs)
-    forces.leftCols(motion.cols() - 6) = shear_forces(*built->shear_pairs, fluid.viscosity,
-                                                      motion.leftCols(motion.cols() - 6));
-  return forces;
+    sum.topLeftCorner(3, spheres) =
+        shear_forces(*built->shear_pairs, fluid.viscosity, of.topLeftCorner(3, spheres));
+  return sum;
 }
 
 /// Of the velocities of the packing or, in stages, of their mean over the step: by linearity the mean
 /// force.
-void FlowData::add_shear_forces(const Packing& packing) {
+void FlowData::add_shear_forces() {
   if (!moving) return;
-  const Eigen::Matrix3Xd of_grains =
-      shear_forces_of(mean_motion.cols() > 0 ? mean_motion : motion_of(packing));
+  const Loads of_grains = shear_forces_of(motion);
   const std::vector<int>& columns = built->grains.columns;
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto column = of_grains.col(static_cast<Eigen::Index>(i));
+    const auto column = of_grains.col(static_cast<Eigen::Index>(i)).head<3>();
     forces.total.col(columns[i]) += column;
     if (options.split_forces) forces.viscous.col(columns[i]) += column;
   }

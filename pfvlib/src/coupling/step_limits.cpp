@@ -17,29 +17,29 @@ double limit_of(double eigenvalue) {
 
 }  // namespace
 
-double FlowData::largest_drag(
-    const std::function<Eigen::Matrix3Xd(const Eigen::VectorXd&)>& forces_of_pressures) {
+/// Largest eigenvalue of M^-1 S G^-1 S^T, 1/s (with geometric rates E in place of S^T). The operator is
+/// similar to it and, but for those, symmetric.
+double FlowData::largest_drag() {
   const int spheres = built->grains.spheres.size();
   if (built->unknowns.count == 0 || spheres == 0) return 0.0;
-  make_volume_rates(*built);
-  // similar to M^-1 F G^-1 E, and nearly symmetric
   const Eigen::VectorXd& masses = built->limit_masses;
-  Eigen::RowVectorXd root(spheres + 6);
-  for (int i = 0; i < spheres; ++i) root[i] = 1.0 / std::sqrt(masses[built->grains.columns[i]]);
-  root.tail(6) = masses.tail(6).transpose().cwiseSqrt().cwiseInverse();
+  Matrix6Xd root = Matrix6Xd::Zero(6, spheres + 6);
+  for (int i = 0; i < spheres; ++i) {
+    const double mass = masses[built->grains.columns[i]];
+    root.col(i).head<3>().setConstant(1.0 / std::sqrt(mass));
+    root.col(i).tail<3>().setConstant(
+        1.0 / std::sqrt(inertia_of(mass, built->grains.spheres.radii[i])));
+  }
+  for (int face = 0; face < 6; ++face)  // guided along its axis
+    root(face / 2, spheres + face) = 1.0 / std::sqrt(masses[masses.size() - 6 + face]);
+  Eigen::VectorXd opened;
   const auto drag = [&](const Eigen::VectorXd& u) {
-    const Eigen::Matrix3Xd v =
-        (u.reshaped(3, spheres + 6).array().rowwise() * root.array()).matrix();
-    const Eigen::VectorXd p =
-        homogeneous_pressures(*built, volume_rates(*built->volume_rate_matrix, v));
-    Eigen::Matrix3Xd force = forces_of_pressures(p) - shear_forces_of(v);
-    force.array().rowwise() *= root.array();
-    for (int face = 0; face < 6; ++face)  // guided along its axis
-      for (int axis = 0; axis < 3; ++axis)
-        if (axis != face / 2) force(axis, spheres + face) = 0.0;
-    return Eigen::VectorXd(force.reshaped());
+    const Motion v = (u.reshaped(6, spheres + 6).array() * root.array()).matrix();
+    rates_of(*built, v, *team, opened);
+    const Loads load = loads_of(*built, homogeneous_pressures(*built, opened)) - shear_forces_of(v);
+    return Eigen::VectorXd((load.array() * root.array()).matrix().reshaped());
   };
-  return largest_eigenvalue(drag, 3 * (spheres + 6));
+  return largest_eigenvalue(drag, 6 * (spheres + 6));
 }
 
 double FlowData::time_step_limit(const Eigen::VectorXd& masses,
@@ -55,20 +55,10 @@ double FlowData::time_step_limit(const Eigen::VectorXd& masses,
     throw InputError("time step limit: a mass is not a positive number; give kg");
   if (built->time_step_limit && all == built->limit_masses) return *built->time_step_limit;
   built->limit_masses = all;
-  built->stage_limit.reset();
   make_force_matrices(*built, options, *team, counts);
-  built->time_step_limit = limit_of(
-      largest_drag([&](const Eigen::VectorXd& p) { return forces_with_faces(*built, p); }));
+  make_volume_rates(*built, options, *team, counts);
+  built->time_step_limit = limit_of(largest_drag());
   return *built->time_step_limit;
-}
-
-double FlowData::stage_limit() {
-  if (!built->stage_limit) {
-    make_energy_forces(*built);
-    built->stage_limit = limit_of(
-        largest_drag([&](const Eigen::VectorXd& p) { return multiply(*built->energy_forces, p); }));
-  }
-  return *built->stage_limit;
 }
 
 }  // namespace pfv

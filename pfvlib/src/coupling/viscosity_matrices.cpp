@@ -14,7 +14,7 @@ namespace {
 Eigen::Vector3d row_times(const ForceMatrix& matrix, int row, const Eigen::VectorXd& pressures) {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (int i = matrix.row_begin[row]; i < matrix.row_begin[row + 1]; ++i)
-    force += matrix.value.col(i) * pressures[matrix.pore[i]];
+    force += matrix.value.col(i).head<3>() * pressures[matrix.pore[i]];
   return force;
 }
 
@@ -30,24 +30,21 @@ std::vector<Eigen::Matrix3d> FlowData::viscosity_matrices(const std::vector<int>
   const int spheres = built->grains.spheres.size();
   if (spheres == 0) return result;
   make_force_matrices(*built, options, *team, counts);
-  make_volume_rates(*built);
-  const ForceMatrix columns_of_rates = energy_force_matrix(*built->volume_rate_matrix, spheres);
+  make_volume_rates(*built, options, *team, counts);
   const std::vector<int>& active = built->grains.columns;
-  Eigen::VectorXd opened = Eigen::VectorXd::Zero(built->network.pores());
+  Motion alone = Motion::Zero(6, spheres + 6);
+  Eigen::VectorXd opened;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const auto found = std::lower_bound(active.begin(), active.end(), columns[c]);
     if (found == active.end() || *found != columns[c]) continue;  // left out: no fluid around it
     const auto k = static_cast<int>(found - active.begin());
     for (int axis = 0; axis < 3; ++axis) {
-      opened.setZero();
-      for (int i = columns_of_rates.row_begin[k]; i < columns_of_rates.row_begin[k + 1]; ++i)
-        opened[columns_of_rates.pore[i]] += columns_of_rates.value(axis, i);
+      alone(axis, k) = 1.0;
+      rates_of(*built, alone, *team, opened);
       result[c].col(axis) =
-          row_times(*built->force_matrix, k, homogeneous_pressures(*built, opened));
-      if (!built->shear_pairs) continue;
-      Eigen::Matrix3Xd motion = Eigen::Matrix3Xd::Zero(3, spheres + 6);
-      motion(axis, k) = 1.0;
-      result[c].col(axis) -= shear_forces_of(motion).col(k);
+          row_times(*built->force_matrix, k, homogeneous_pressures(*built, opened)) -
+          shear_forces_of(alone).col(k).head<3>();
+      alone(axis, k) = 0.0;
     }
   }
   return result;

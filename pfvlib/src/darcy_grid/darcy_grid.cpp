@@ -70,6 +70,7 @@ void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options)
   const Options defaults;
   refuse_if(fluid.bulk_modulus.has_value(), "bulk modulus");
   refuse_if(options.partition != defaults.partition, "partition of throats");
+  refuse_if(options.volume_rates != defaults.volume_rates, "choice of volume rates");
   refuse_if(options.conductance != defaults.conductance, "conductance law");
   refuse_if(options.retriangulation_strain != defaults.retriangulation_strain,
             "retriangulation strain");
@@ -132,7 +133,7 @@ const Fluid& DarcyGrid::fluid() const { return data_->fluid; }
 const DarcyOptions& DarcyGrid::grid() const { return data_->grid_options; }
 double DarcyGrid::time() const { return data_->time; }
 
-FlowState DarcyGrid::state() const { return {data_->time, 0.0, data_->looks, {}, {}, {}}; }
+FlowState DarcyGrid::state() const { return {data_->time, 0.0, data_->looks, {}, 0.0}; }
 
 void DarcyGrid::set_state(FlowState state) {
   data_->time = state.time;

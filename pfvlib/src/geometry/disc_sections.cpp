@@ -12,28 +12,38 @@ double cross(const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
   return p.x() * q.y() - p.y() * q.x();
 }
 
-double sector(const Eigen::Vector2d& p, const Eigen::Vector2d& q, double radius) {
-  return 0.5 * radius * radius * std::atan2(cross(p, q), p.dot(q));
+/// The sector of the disc from the direction of p to that of q: its moment is r³/3 times the integral of the
+/// directions between them.
+void add_sector(Section& sum, const Eigen::Vector2d& p, const Eigen::Vector2d& q, double radius) {
+  sum.area += 0.5 * radius * radius * std::atan2(cross(p, q), p.dot(q));
+  const Eigen::Vector2d turn = q.normalized() - p.normalized();
+  sum.moment += radius * radius * radius / 3.0 * Eigen::Vector2d(turn.y(), -turn.x());
 }
 
-/// Signed area common to the disc and the triangle (origin, p, q).
-double triangle_in_disc(const Eigen::Vector2d& p, const Eigen::Vector2d& q, double radius) {
+void add_triangle(Section& sum, const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+  const double area = 0.5 * cross(p, q);
+  sum.area += area;
+  sum.moment += area / 3.0 * (p + q);
+}
+
+/// What the disc and the triangle (origin, p, q) have in common, signed.
+void add_triangle_in_disc(Section& sum, const Eigen::Vector2d& p, const Eigen::Vector2d& q,
+                          double radius) {
   const Eigen::Vector2d edge = q - p;
   const double length2 = edge.squaredNorm();
-  if (length2 == 0.0) return 0.0;
+  if (length2 == 0.0) return;
   // where the edge's line p + s edge meets the circle
   const double middle = -p.dot(edge) / length2;
   const double discriminant =
       middle * middle - (p.squaredNorm() - radius * radius) / length2;
-  if (discriminant <= 0.0) return sector(p, q, radius);
+  if (discriminant <= 0.0) return add_sector(sum, p, q, radius);
   const double half = std::sqrt(discriminant);
   const double enter = std::max(0.0, middle - half), leave = std::min(1.0, middle + half);
-  if (enter >= leave) return sector(p, q, radius);
+  if (enter >= leave) return add_sector(sum, p, q, radius);
   const Eigen::Vector2d in = p + enter * edge, out = p + leave * edge;
-  double area = 0.5 * cross(in, out);
-  if (enter > 0.0) area += sector(p, in, radius);
-  if (leave < 1.0) area += sector(out, q, radius);
-  return area;
+  add_triangle(sum, in, out);
+  if (enter > 0.0) add_sector(sum, p, in, radius);
+  if (leave < 1.0) add_sector(sum, out, q, radius);
 }
 
 }  // namespace
@@ -50,11 +60,12 @@ Polygon clip(const Polygon& polygon, const Eigen::Vector2d& normal, double offse
   return kept;
 }
 
-double area_in_disc(const Polygon& polygon, double radius) {
-  double area = 0.0;
+Section section_in_disc(const Polygon& polygon, double radius) {
+  Section sum;
   for (int i = 0; i < polygon.size; ++i)
-    area += triangle_in_disc(polygon.corners[i], polygon.corners[(i + 1) % polygon.size], radius);
-  return std::max(area, 0.0);
+    add_triangle_in_disc(sum, polygon.corners[i], polygon.corners[(i + 1) % polygon.size], radius);
+  if (sum.area <= 0.0) return {};
+  return sum;
 }
 
 }  // namespace pfv

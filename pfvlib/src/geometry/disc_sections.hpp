@@ -17,7 +17,13 @@ struct Polygon {
 /// The part of a convex polygon where normal . x <= offset.
 Polygon clip(const Polygon& polygon, const Eigen::Vector2d& normal, double offset);
 
-/// Area common to a polygon and the disc of the given radius about the origin.
-double area_in_disc(const Polygon& polygon, double radius);
+/// Area (m²) of a flat figure and its first moment about the origin (m³): area times centroid.
+struct Section {
+  double area = 0.0;
+  Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+};
+
+/// What a polygon and the disc of the given radius about the origin have in common.
+Section section_in_disc(const Polygon& polygon, double radius);
 
 }  // namespace pfv

@@ -19,15 +19,20 @@ using detail::quoted;
 using detail::TextLines;
 using Words = std::vector<std::string_view>;
 
-enum Column { id, x, y, z, radius, vx, vy, vz, column_count };
-constexpr std::array<const char*, column_count> column_names{"id",     "x",  "y",  "z",
-                                                             "radius", "vx", "vy", "vz"};
+enum Column { id, x, y, z, radius, vx, vy, vz, omegax, omegay, omegaz, column_count };
+constexpr std::array<const char*, column_count> column_names{
+    "id", "x", "y", "z", "radius", "vx", "vy", "vz", "omegax", "omegay", "omegaz"};
 
 /// Where in a line each column stands.
 struct Columns {
   std::array<int, column_count> place;
   std::size_t fields = 0;
   bool velocities() const { return place[vx] >= 0; }
+  bool spins() const { return place[omegax] >= 0; }
+  /// Those that are read.
+  bool read(int column) const {
+    return column < vx || (column < omegax ? velocities() : spins());
+  }
 };
 
 Columns find_columns(const TextLines& lines, const Words& names) {
@@ -42,14 +47,18 @@ Columns find_columns(const TextLines& lines, const Words& names) {
                      " is named twice: keep one of them");
         columns.place[column] = static_cast<int>(field);
       }
-  // Velocities come all three or not at all.
-  const bool moving = std::any_of(columns.place.begin() + vx, columns.place.end(),
-                                  [](int place) { return place >= 0; });
-  for (int column = 0; column < (moving ? column_count : vx); ++column)
-    if (columns.place[column] < 0)
+  // velocities and spins come all three or not at all
+  const auto any_of = [&](int first) {
+    return std::any_of(columns.place.begin() + first, columns.place.begin() + first + 3,
+                       [](int place) { return place >= 0; });
+  };
+  const bool moving = any_of(vx), spinning = any_of(omegax);
+  for (int column = 0; column < column_count; ++column)
+    if (columns.place[column] < 0 &&
+        (column < vx || (column < omegax ? moving : spinning)))
       lines.fail(std::string("column ") + column_names[column] +
-                 " is missing: the columns id, x, y, z, radius (and vx, vy, vz together)"
-                 " must be named here, not " + quoted(lines.line()));
+                 " is missing: the columns id, x, y, z, radius (and vx, vy, vz together, or "
+                 "omegax, omegay, omegaz) must be named here, not " + quoted(lines.line()));
   return columns;
 }
 
@@ -73,8 +82,8 @@ class SphereTable {
     if (!number) lines.fail("id is " + quoted(text) + ": give a whole number");
     ids_.push_back(*number);
     line_numbers_.push_back(lines.number());
-    for (int column = x; column < (columns_.velocities() ? column_count : vx); ++column)
-      values_.push_back(value(lines, fields, column));
+    for (int column = x; column < column_count; ++column)
+      if (columns_.read(column)) values_.push_back(value(lines, fields, column));
   }
 
   PackingArrays arrays(const std::string& path) const {
@@ -88,12 +97,15 @@ class SphereTable {
     packing.ids = Eigen::Map<const Packing::Ids>(ids_.data(), n);
     packing.positions = values.topRows<3>();
     packing.radii = values.row(3).transpose();
-    if (columns_.velocities()) packing.velocities = values.bottomRows<3>();
+    if (columns_.velocities()) packing.velocities = values.middleRows<3>(4);
+    if (columns_.spins()) packing.angular_velocities = values.bottomRows<3>();
     return packing;
   }
 
  private:
-  std::size_t values_a_sphere() const { return columns_.velocities() ? 7 : 4; }
+  std::size_t values_a_sphere() const {
+    return 4 + 3 * columns_.velocities() + 3 * columns_.spins();
+  }
 
   double value(const TextLines& lines, const Words& fields, int column) const {
     const std::string_view text = fields[columns_.place[column]];
@@ -122,7 +134,7 @@ class SphereTable {
   Columns columns_;
   std::vector<std::int64_t> ids_;
   std::vector<std::size_t> line_numbers_;
-  std::vector<double> values_;  // x, y, z, radius[, vx, vy, vz] of one sphere after the other
+  std::vector<double> values_;  // those read, of one sphere after the other
 };
 
 std::string whole_file(const std::string& path) {

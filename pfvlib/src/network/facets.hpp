@@ -40,6 +40,39 @@ inline Eigen::Vector3d area_vector(const std::array<Vertex, 3>& facet, const Sph
   return height * spheres.distance(a, wall_number(facet[1])) * normal;
 }
 
+/// Corners of the facet's polygon, counterclockwise about its normal.
+struct FacetCorners {
+  std::array<Eigen::Vector3d, 4> at;  ///< m
+  int count = 3;
+};
+inline FacetCorners corners_of(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
+  const auto on_wall = [&](const Eigen::Vector3d& from, int k, Vertex wall) -> Eigen::Vector3d {
+    return from + spheres.distance(k, wall_number(wall)) * spheres.towards(k, wall);
+  };
+  const Eigen::Vector3d a = spheres.centres.col(facet[0]);
+  if (!is_wall(facet[2]))
+    return {{a, spheres.centres.col(facet[1]), spheres.centres.col(facet[2]), a}, 3};
+  const Eigen::Vector3d last = on_wall(a, facet[0], facet[2]);
+  if (is_wall(facet[1])) {
+    const Eigen::Vector3d second = on_wall(a, facet[0], facet[1]);
+    return {{a, second, second + last - a, last}, 4};
+  }
+  const Eigen::Vector3d b = spheres.centres.col(facet[1]);
+  return {{a, b, on_wall(b, facet[1], facet[2]), last}, 4};
+}
+
+/// Integral of x cross n over a polygon, m³: the moment about the corner of the box of a unit pressure on it.
+/// Over the facets and bases of a cell it adds up to zero.
+inline Eigen::Vector3d moment_vector(const FacetCorners& polygon) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d& a = polygon.at[0];
+  for (int i = 1; i + 1 < polygon.count; ++i) {
+    const Eigen::Vector3d &b = polygon.at[i], &c = polygon.at[i + 1];
+    sum += (a + b + c).cross((b - a).cross(c - a)) / 6.0;
+  }
+  return sum;
+}
+
 /// Unit normal of the facet; zero for a facet without area.
 inline Eigen::Vector3d unit_normal(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
   const Eigen::Vector3d normal =

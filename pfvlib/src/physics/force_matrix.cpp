@@ -2,6 +2,8 @@
 #include "physics/force_matrix.hpp"
 
 #include "geometry/solid_angle.hpp"
+#include "network/facets.hpp"
+#include "physics/disc_parts.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -46,111 +48,168 @@ void normalise(ViscousShares& shares, const PoreNetwork& network, int t) {
       shares[f][k] = is_wall(network.facet_vertices[f][k]) ? 0.0 : 1.0 / count;
 }
 
-/// The part of throat t's area that acts on corner k of its facet f.
-double share_of_corner(const Throats& throats, const ViscousShares& shares, ForceParts parts, int t,
-                       int f, int k) {
-  double area = 0.0;
-  if (parts.pressure) area += throats.facet_disc[f][k];
-  if (parts.viscous) area += throats.fluid_area[t] * shares[f][k];
-  return area;
+/// What S is made of.
+struct Makings {
+  const PoreNetwork& network;
+  const Spheres& vertices;
+  const Throats& throats;
+  const ViscousShares& shares;
+  int spheres;
+  ForceParts parts;
+
+  /// The part of throat t's area that acts on corner k of its facet f.
+  double area(int t, int f, int k) const {
+    double sum = 0.0;
+    if (parts.pressure) sum += throats.facet_disc[f][k];
+    if (parts.viscous) sum += throats.fluid_area[t] * shares[f][k];
+    return sum;
+  }
+  int row(int f, int k) const {
+    const Vertex vertex = network.facet_vertices[f][k];
+    return is_wall(vertex) ? spheres + wall_number(vertex) : network.vertex_sphere[vertex];
+  }
+  /// Calls visit(throat, facet, corner) for every facet vertex that takes a force.
+  template <class Visit>
+  void for_each_corner(Visit&& visit) const {
+    for (int t = 0; t < network.throats(); ++t)
+      for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
+        for (int k = 0; k < 3; ++k)
+          if (area(t, f, k) != 0.0) visit(t, f, k);
+  }
+};
+
+Eigen::Vector3d moment_of_disc(const Makings& m, int f, int k) {
+  const auto& facet = m.network.facet_vertices[f];
+  if (is_wall(facet[k])) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d area = area_vector(facet, m.vertices);
+  const double size = area.norm();
+  if (size == 0.0) return Eigen::Vector3d::Zero();
+  return disc_moment(facet, k, m.vertices, area / size, size);
 }
 
-/// Visits (row, throat, facet, corner, area) for every facet vertex that takes a force.
-template <class Visit>
-void for_each_share(const PoreNetwork& network, const Throats& throats,
-                    const ViscousShares& shares, int spheres, ForceParts parts, Visit&& visit) {
-  for (int t = 0; t < network.throats(); ++t)
-    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
-      for (int k = 0; k < 3; ++k) {
-        const Vertex vertex = network.facet_vertices[f][k];
-        const double area = share_of_corner(throats, shares, parts, t, f, k);
-        if (area != 0.0)
-          visit(is_wall(vertex) ? spheres + wall_number(vertex) : network.vertex_sphere[vertex],
-                t, f, k, area);
-      }
+/// Moment about the corner of the box of a unit pressure on a throat's fluid area: that on its facets less
+/// that on the discs, m³.
+Eigen::Vector3d moment_of_fluid(const Makings& m, int t) {
+  const Eigen::Vector3d normal = m.throats.normal.col(t);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), discs = sum;
+  for (int f = m.network.throat_facets[t]; f < m.network.throat_facets[t + 1]; ++f) {
+    sum += moment_vector(corners_of(m.network.facet_vertices[f], m.vertices));
+    for (int k = 0; k < 3; ++k) {
+      const double part = m.throats.facet_disc[f][k];
+      if (part == 0.0) continue;
+      discs += part * m.vertices.centres.col(m.network.facet_vertices[f][k]) + moment_of_disc(m, f, k);
+    }
+  }
+  return sum - discs.cross(normal);
 }
+
+/// What each corner of each facet takes of a unit pressure difference across its throat.
+class Corners {
+ public:
+  Corners(const Makings& makings, Team& team) : m_(makings) {
+    if (!m_.parts.moments) return;
+    fluid_.resize(3, m_.network.throats());
+    constexpr int piece = 512;
+    team.run((m_.network.throats() + piece - 1) / piece, [&](int number) {
+      const int last = std::min((number + 1) * piece, m_.network.throats());
+      for (int t = number * piece; t < last; ++t) fluid_.col(t) = moment_of_fluid(m_, t);
+    });
+  }
+
+  Vector6d operator()(int t, int f, int k) const {
+    const Eigen::Vector3d normal = m_.throats.normal.col(t);
+    Vector6d load;
+    load.head<3>() = m_.area(t, f, k) * normal;
+    load.tail<3>().setZero();
+    if (m_.parts.moments) load.tail<3>() = moment(t, f, k, normal);
+    return load;
+  }
+
+ private:
+  Eigen::Vector3d moment(int t, int f, int k, const Eigen::Vector3d& normal) const {
+    const Vertex vertex = m_.network.facet_vertices[f][k];
+    const double share = m_.shares[f][k];
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    if (m_.parts.viscous) sum = share * fluid_.col(t);
+    if (is_wall(vertex)) return sum;
+    if (m_.parts.viscous)
+      sum -= share * m_.throats.fluid_area[t] * m_.vertices.centres.col(vertex).cross(normal);
+    if (m_.parts.pressure && m_.throats.facet_disc[f][k] != 0.0)
+      sum += moment_of_disc(m_, f, k).cross(normal);
+    return sum;
+  }
+
+  const Makings& m_;
+  Eigen::Matrix3Xd fluid_;  ///< `moment_of_fluid` of each throat
+};
 
 /// A vertex of a facet that takes a force, as one number.
 int corner_number(int facet, int k) { return 3 * facet + k; }
 
-/// Rows first ... last - 1 of S, made one after the other from the corners that act on each.
-class RowMaker {
- public:
-  RowMaker(const PoreNetwork& network, const Throats& throats, const ViscousShares& shares,
-           ForceParts parts, const std::vector<int>& throat_of_facet)
-      : network_(network), throats_(throats), shares_(shares), parts_(parts),
-        throat_of_facet_(throat_of_facet), place_(network.pores(), -1) {}
+/// The corners that act on each row, and the throats of the facets.
+struct CornerLists {
+  std::vector<int> begin, corner, throat_of_facet;
 
-  /// Appends a row: its entries by ascending pores, those of one pore added in the order of the corners.
-  void add(const int* begin, const int* end) {
-    row_.clear();
-    for (const int* corner = begin; corner != end; ++corner) {
-      const int f = *corner / 3, k = *corner % 3, t = throat_of_facet_[f];
-      const Eigen::Vector3d force =
-          share_of_corner(throats_, shares_, parts_, t, f, k) * throats_.normal.col(t);
-      take(network_.throat_pores[t][0], force);
-      take(network_.throat_pores[t][1], -force);
-    }
-    std::sort(row_.begin(), row_.end(),
-              [](const Entry& a, const Entry& b) { return a.pore < b.pore; });
-    for (const Entry& entry : row_) {
-      pore.push_back(entry.pore);
-      value.push_back(entry.value);
-      place_[entry.pore] = -1;
-    }
-    entries.push_back(static_cast<int>(row_.size()));
+  explicit CornerLists(const Makings& m)
+      : begin(m.spheres + 7, 0), throat_of_facet(m.network.throat_facets.back()) {
+    m.for_each_corner([&](int, int f, int k) { ++begin[m.row(f, k) + 1]; });
+    for (std::size_t row = 1; row < begin.size(); ++row) begin[row] += begin[row - 1];
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    corner.resize(begin.back());
+    m.for_each_corner([&](int t, int f, int k) {
+      corner[next[m.row(f, k)]++] = corner_number(f, k);
+      throat_of_facet[f] = t;
+    });
   }
-
-  void reserve(std::size_t count) {
-    pore.reserve(count);
-    value.reserve(count);
-  }
-
-  std::vector<int> pore, entries;  ///< `entries`: of each row
-  std::vector<Eigen::Vector3d> value;
-
- private:
-  struct Entry {
-    int pore;
-    Eigen::Vector3d value;
-  };
-
-  void take(int p, const Eigen::Vector3d& force) {
-    if (place_[p] < 0) {
-      place_[p] = static_cast<int>(row_.size());
-      row_.push_back({p, force});
-    } else {
-      row_[place_[p]].value += force;
-    }
-  }
-
-  const PoreNetwork& network_;
-  const Throats& throats_;
-  const ViscousShares& shares_;
-  ForceParts parts_;
-  const std::vector<int>& throat_of_facet_;
-  std::vector<Entry> row_;
-  std::vector<int> place_;  ///< in the row, by pore
 };
 
-ForceMatrix joined(std::vector<RowMaker>& makers) {
-  ForceMatrix matrix;
-  std::size_t entries = 0;
-  for (const RowMaker& maker : makers) {
-    entries += maker.pore.size();
-    for (const int count : maker.entries)
-      matrix.row_begin.push_back(matrix.row_begin.back() + count);
+/// The pores of one row of S after the other, ascending.
+class RowPores {
+ public:
+  RowPores(const PoreNetwork& network, const CornerLists& lists)
+      : network_(network), lists_(lists), row_of_(network.pores(), -1) {}
+
+  const std::vector<int>& of(int row) {
+    pores_.clear();
+    for (int c = lists_.begin[row]; c < lists_.begin[row + 1]; ++c)
+      for (const int pore : network_.throat_pores[lists_.throat_of_facet[lists_.corner[c] / 3]])
+        if (row_of_[pore] != row) {
+          row_of_[pore] = row;
+          pores_.push_back(pore);
+        }
+    std::sort(pores_.begin(), pores_.end());
+    return pores_;
   }
-  matrix.pore.reserve(entries);
-  matrix.value.resize(3, static_cast<Eigen::Index>(entries));
-  Eigen::Index column = 0;
-  for (RowMaker& maker : makers) {
-    matrix.pore.insert(matrix.pore.end(), maker.pore.begin(), maker.pore.end());
-    for (const Eigen::Vector3d& value : maker.value) matrix.value.col(column++) = value;
-    maker.pore = {};
-    maker.value = {};
+
+ private:
+  const PoreNetwork& network_;
+  const CornerLists& lists_;
+  std::vector<int> row_of_, pores_;
+};
+
+/// Calls work(first row, one past the last) on a piece of the rows for each thread.
+template <class Work>
+void run_pieces(Team& team, int rows, const Work& work) {
+  const int pieces = team.threads();
+  const auto bound = [&](int number) {
+    return static_cast<int>(static_cast<std::int64_t>(rows) * number / pieces);
+  };
+  team.run(pieces, [&](int piece) { work(bound(piece), bound(piece + 1)); });
+}
+
+/// Entries of one row, those of one pore added in the order of the corners.
+void fill_row(ForceMatrix& matrix, const Makings& m, const CornerLists& lists,
+              const Corners& corners, int row, std::vector<int>& place) {
+  for (int e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e) {
+    place[matrix.pore[e]] = e;
+    matrix.value.col(e).setZero();
   }
-  return matrix;
+  for (int c = lists.begin[row]; c < lists.begin[row + 1]; ++c) {
+    const int f = lists.corner[c] / 3, t = lists.throat_of_facet[f];
+    const Vector6d load = corners(t, f, lists.corner[c] % 3);
+    matrix.value.col(place[m.network.throat_pores[t][0]]) += load;
+    matrix.value.col(place[m.network.throat_pores[t][1]]) -= load;
+  }
 }
 
 }  // namespace
@@ -170,88 +229,73 @@ ViscousShares viscous_shares(ConductanceLaw law, const PoreNetwork& network,
   return shares;
 }
 
-ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
-                         const ViscousShares& shares, int spheres, ForceParts parts, Team& team) {
+ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
+                         const Throats& throats, const ViscousShares& shares, int spheres,
+                         ForceParts parts, Team& team) {
+  const Makings makings{network, vertices, throats, shares, spheres, parts};
+  const CornerLists lists(makings);
+  const Corners corners(makings, team);
   const int rows = spheres + 6;
-  std::vector<int> begin(rows + 1, 0), throat_of_facet(network.throat_facets.back());
-  for_each_share(network, throats, shares, spheres, parts,
-                 [&](int row, int, int, int, double) { ++begin[row + 1]; });
-  for (int row = 0; row < rows; ++row) begin[row + 1] += begin[row];
-  std::vector<int> next(begin.begin(), begin.end() - 1), corners(begin.back());
-  for_each_share(network, throats, shares, spheres, parts,
-                 [&](int row, int t, int f, int k, double) {
-                   corners[next[row]++] = corner_number(f, k);
-                   throat_of_facet[f] = t;
-                 });
-  const int pieces = team.threads();
-  std::vector<RowMaker> makers(pieces, {network, throats, shares, parts, throat_of_facet});
-  for (RowMaker& maker : makers)  // a sphere meets a pore in each cell that has it for a vertex
-    maker.reserve(4 * static_cast<std::size_t>(network.cells()) / pieces + 64);
-  team.run(pieces, [&](int piece) {
-    const auto bound = [&](int number) {
-      return static_cast<int>(static_cast<std::int64_t>(rows) * number / pieces);
-    };
-    for (int row = bound(piece); row < bound(piece + 1); ++row)
-      makers[piece].add(corners.data() + begin[row], corners.data() + begin[row + 1]);
-  });
-  return joined(makers);
-}
-
-ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
-                         const ViscousShares& shares, int spheres, ForceParts parts) {
-  Team alone;
-  return force_matrix(network, throats, shares, spheres, parts, alone);
-}
-
-ForceMatrix energy_force_matrix(const VolumeRateMatrix& rates, int spheres) {
-  const auto row_of = [&](Vertex mover) {
-    return is_wall(mover) ? spheres + wall_number(mover) : mover;
-  };
   ForceMatrix matrix;
-  matrix.row_begin.assign(spheres + 7, 0);
-  for (const Vertex mover : rates.mover) ++matrix.row_begin[row_of(mover) + 1];
-  for (int row = 0; row < spheres + 6; ++row) matrix.row_begin[row + 1] += matrix.row_begin[row];
-  matrix.pore.resize(rates.mover.size());
-  matrix.value.resize(3, rates.area.cols());
-  std::vector<int> next(matrix.row_begin.begin(), matrix.row_begin.end() - 1);
-  for (int pore = 0; pore < rates.rows(); ++pore)
-    for (int e = rates.row_begin[pore]; e < rates.row_begin[pore + 1]; ++e) {
-      const int entry = next[row_of(rates.mover[e])]++;
-      matrix.pore[entry] = pore;
-      matrix.value.col(entry) = rates.area.col(e);
+  matrix.row_begin.assign(rows + 1, 0);
+  run_pieces(team, rows, [&](int first, int last) {
+    RowPores pores(network, lists);
+    for (int row = first; row < last; ++row)
+      matrix.row_begin[row + 1] = static_cast<int>(pores.of(row).size());
+  });
+  for (int row = 0; row < rows; ++row) matrix.row_begin[row + 1] += matrix.row_begin[row];
+  matrix.pore.resize(matrix.row_begin.back());
+  matrix.value.resize(6, matrix.row_begin.back());
+  run_pieces(team, rows, [&](int first, int last) {
+    RowPores pores(network, lists);
+    std::vector<int> place(network.pores());
+    for (int row = first; row < last; ++row) {
+      const std::vector<int>& own = pores.of(row);
+      std::copy(own.begin(), own.end(), matrix.pore.begin() + matrix.row_begin[row]);
+      fill_row(matrix, makings, lists, corners, row, place);
     }
+  });
   return matrix;
 }
 
-void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team,
-              Eigen::Matrix3Xd& forces) {
-  forces.resize(3, matrix.rows());
+ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
+                         const Throats& throats, const ViscousShares& shares, int spheres,
+                         ForceParts parts) {
+  Team alone;
+  return force_matrix(network, vertices, throats, shares, spheres, parts, alone);
+}
+
+void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team, Loads& loads) {
+  loads.resize(6, matrix.rows());
   const int* const begin = matrix.row_begin.data();
   team.run_rows(begin, matrix.rows(), [&](int first, int last) {
     for (int row = first; row < last; ++row) {
-      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      Vector6d sum = Vector6d::Zero();
       for (int e = begin[row]; e < begin[row + 1]; ++e)
         sum += pressures[matrix.pore[e]] * matrix.value.col(e);
-      forces.col(row) = sum;
+      loads.col(row) = sum;
     }
   });
 }
 
-Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures) {
+Loads multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures) {
   Team alone;
-  Eigen::Matrix3Xd forces;
-  multiply(matrix, pressures, alone, forces);
-  return forces;
+  Loads loads;
+  multiply(matrix, pressures, alone, loads);
+  return loads;
 }
 
-Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& throats,
-                                 const ViscousShares& shares, int spheres, ForceParts parts,
-                                 const Eigen::Vector3d& gradient) {
-  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, spheres + 6);
-  for_each_share(network, throats, shares, spheres, parts, [&](int row, int t, int, int, double area) {
-    forces.col(row) -= area * gradient.dot(network.throat_offset(t)) * throats.normal.col(t);
+Loads gradient_forces(const PoreNetwork& network, const Spheres& vertices, const Throats& throats,
+                      const ViscousShares& shares, int spheres, ForceParts parts,
+                      const Eigen::Vector3d& gradient) {
+  const Makings makings{network, vertices, throats, shares, spheres, parts};
+  Team alone;
+  const Corners corners(makings, alone);
+  Loads loads = Loads::Zero(6, spheres + 6);
+  makings.for_each_corner([&](int t, int f, int k) {
+    loads.col(makings.row(f, k)) -= gradient.dot(network.throat_offset(t)) * corners(t, f, k);
   });
-  return forces;
+  return loads;
 }
 
 SurfacePressure surface_pressure(const PoreNetwork& network, const Spheres& vertices,

@@ -3,8 +3,8 @@
 
 #include "network/spheres.hpp"
 #include "parallel/team.hpp"
+#include "physics/rigid_motion.hpp"
 #include "physics/throats.hpp"
-#include "physics/volume_rates.hpp"
 #include "pfv/network.hpp"
 #include "pfv/options.hpp"
 
@@ -15,17 +15,19 @@
 namespace pfv {
 
 /// S of F = S p (Chareyre et al. 2012 eqs. 14, 17, 18), in compressed rows: row k < N is sphere k,
-/// row N + f the viscous force on face f. An entry is a vector (m²) for the pressure of one pore.
+/// row N + f the viscous force on face f. An entry is the force (m²) and the moment (m³) that the pressure
+/// of one pore gives.
 struct ForceMatrix {
   std::vector<int> row_begin{0};
   std::vector<int> pore;
-  Eigen::Matrix3Xd value;
+  Matrix6Xd value;
 
   int rows() const { return static_cast<int>(row_begin.size()) - 1; }
 };
 
+/// `moments`: where forces act besides; without them all act at the centres of the spheres, as in the papers.
 struct ForceParts {
-  bool pressure = true, viscous = true;
+  bool pressure = true, viscous = true, moments = true;
 };
 
 /// Share of its throat's viscous force that each vertex of each facet takes; they add up to 1 over a
@@ -41,26 +43,25 @@ ViscousShares viscous_shares(ConductanceLaw law, const PoreNetwork& network,
 
 /// Facet by facet, with n from pore i to pore j: sphere k gets A^k (p_i - p_j) n (pressure), and its share
 /// of A^f (p_i - p_j) n (viscous), as does a no-slip wall. Each throat hands out S (p_i - p_j) n in full,
-/// so the forces on spheres and faces balance for any pressures and shares.
-ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
-                         const ViscousShares& shares, int spheres, ForceParts parts, Team& team);
-ForceMatrix force_matrix(const PoreNetwork& network, const Throats& throats,
-                         const ViscousShares& shares, int spheres, ForceParts parts);
+/// so the forces on spheres and faces balance for any pressures and shares. The moments are those of the parts
+/// where they lie on the facet, the viscous ones at the centroid of the fluid area: with the pressures on
+/// the faces they balance, too, and a pressure has no moment about anything it surrounds.
+/// `vertices`: what the network's vertices stand for; `spheres`: N. No byte depends on the team.
+ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
+                         const Throats& throats, const ViscousShares& shares, int spheres,
+                         ForceParts parts, Team& team);
+ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
+                         const Throats& throats, const ViscousShares& shares, int spheres,
+                         ForceParts parts);
 
-/// E^T: the force that does the work of the pressures on the change of the pores' volumes. Rows as in S,
-/// but row N + f is the force of the pressure on face f. On each facet its sum is that of S; it parts it
-/// in thirds, S by sectors and surfaces.
-ForceMatrix energy_force_matrix(const VolumeRateMatrix& rates, int spheres);
+/// F = S p: 6 x (N + 6), N and N m.
+void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team, Loads& loads);
+Loads multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures);
 
-/// F = S p: 3 x (N + 6), N.
-void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team,
-              Eigen::Matrix3Xd& forces);
-Eigen::Matrix3Xd multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures);
-
-/// What a macroscopic gradient (Pa/m) adds to S p where throats reach into images: 3 x (N + 6), N.
-Eigen::Matrix3Xd gradient_forces(const PoreNetwork& network, const Throats& throats,
-                                 const ViscousShares& shares, int spheres, ForceParts parts,
-                                 const Eigen::Vector3d& gradient);
+/// What a macroscopic gradient (Pa/m) adds to S p where throats reach into images: 6 x (N + 6).
+Loads gradient_forces(const PoreNetwork& network, const Spheres& vertices, const Throats& throats,
+                      const ViscousShares& shares, int spheres, ForceParts parts,
+                      const Eigen::Vector3d& gradient);
 
 /// Mean pressure over each sphere's surface: pores weighted with the solid angle of their cells, Pa.
 /// Around an image a macroscopic gradient has raised it by the gradient times the image's offset.

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/throats.hpp"
 
-#include "geometry/arctangent.hpp"
-#include "geometry/disc_sections.hpp"
 #include "geometry/solid_angle.hpp"
 #include "network/facets.hpp"
+#include "physics/disc_parts.hpp"
 #include "physics/facet_shapes.hpp"
 
 #include <algorithm>
@@ -13,112 +12,6 @@
 namespace pfv {
 
 namespace {
-
-/// The facet's polygon in its own plane, with sphere `facet[corner]` at the origin; counterclockwise.
-struct FlatFacet {
-  Polygon polygon;
-  std::array<Eigen::Vector2d, 2> others;  ///< the two other vertices: centres (spheres only)
-};
-
-FlatFacet flatten(const std::array<Vertex, 3>& facet, int corner, const Spheres& spheres,
-                  const Eigen::Vector3d& normal) {
-  const Vertex next = facet[(corner + 1) % 3], previous = facet[(corner + 2) % 3];
-  const int k = facet[corner];
-  const Eigen::Vector3d first = spheres.towards(k, next).normalized();
-  const Eigen::Vector3d second = normal.cross(first);
-  const auto flat = [&](const Eigen::Vector3d& v) {
-    return Eigen::Vector2d(first.dot(v), second.dot(v));
-  };
-  const auto reach = [&](int sphere, Vertex wall) -> Eigen::Vector3d {
-    return spheres.distance(sphere, wall_number(wall)) * spheres.towards(sphere, wall);
-  };
-  const bool next_wall = is_wall(next), previous_wall = is_wall(previous);
-  const Eigen::Vector3d to_next = next_wall ? reach(k, next) : spheres.towards(k, next);
-  const Eigen::Vector3d to_previous =
-      previous_wall ? reach(k, previous) : spheres.towards(k, previous);
-
-  FlatFacet result;
-  result.others = {flat(to_next), flat(to_previous)};
-  result.polygon.add(Eigen::Vector2d::Zero());
-  result.polygon.add(flat(to_next));
-  if (next_wall && previous_wall) result.polygon.add(flat(to_next + to_previous));
-  if (next_wall && !previous_wall)
-    result.polygon.add(flat(to_previous + reach(previous, next)));
-  if (!next_wall && previous_wall) result.polygon.add(flat(to_next + reach(next, previous)));
-  result.polygon.add(flat(to_previous));
-  return result;
-}
-
-/// True when disc k meets neither another disc of the facet nor a side that does not start at its
-/// centre: its part of the facet is then a plain sector.
-bool is_plain_sector(const std::array<Vertex, 3>& facet, int corner, const Spheres& spheres,
-                     double area) {
-  const int k = facet[corner];
-  const double radius = spheres.radii[k];
-  const Vertex next = facet[(corner + 1) % 3], previous = facet[(corner + 2) % 3];
-  for (const Vertex other : {next, previous}) {
-    if (is_wall(other)) {
-      if (spheres.distance(k, wall_number(other)) < radius) return false;
-      continue;
-    }
-    const double reach = radius + spheres.radii[other];
-    if (spheres.towards(k, other).squaredNorm() < reach * reach) return false;
-  }
-  if (is_wall(next) && is_wall(previous)) return true;
-  if (is_wall(facet[2])) {  // trapezoid: the other sphere's plumb line is the opposite side
-    const Vertex other = is_wall(next) ? previous : next;
-    const Vertex wall = is_wall(next) ? next : previous;
-    return spheres.towards(k, other).cross(spheres.towards(k, wall)).norm() >= radius;
-  }
-  const double opposite = (spheres.centres.col(next) - spheres.centres.col(previous)).norm();
-  return 2.0 * area >= radius * opposite;
-}
-
-/// A^k: the part of the facet that disc k covers and that lies on its side of the chords it shares
-/// with the other discs, so that the parts add up to the area of the discs' union.
-double disc_part(const std::array<Vertex, 3>& facet, int corner, const Spheres& spheres,
-                 const Eigen::Vector3d& normal, double area) {
-  const int k = facet[corner];
-  const double radius = spheres.radii[k];
-  if (is_plain_sector(facet, corner, spheres, area)) {
-    const Eigen::Vector3d u = spheres.towards(k, facet[(corner + 1) % 3]);
-    const Eigen::Vector3d v = spheres.towards(k, facet[(corner + 2) % 3]);
-    return 0.5 * radius * radius * std::atan2(u.cross(v).norm(), u.dot(v));
-  }
-  FlatFacet flat = flatten(facet, corner, spheres, normal);
-  for (int i = 0; i < 2; ++i) {
-    const Vertex other = facet[(corner + 1 + i) % 3];
-    if (is_wall(other)) continue;
-    const double r = spheres.radii[other];
-    const Eigen::Vector2d& centre = flat.others[i];
-    flat.polygon = clip(flat.polygon, centre,
-                        0.5 * (centre.squaredNorm() + (radius - r) * (radius + r)));
-  }
-  return area_in_disc(flat.polygon, radius);
-}
-
-/// A^k in a triangle, where its disc meets no other side and the chords it shares with other discs do not
-/// meet within it: a sector less what lies beyond each chord. Else a negative number.
-double disc_part_of_triangle(const std::array<Vertex, 3>& facet, int corner,
-                             const Spheres& spheres, const FacetShape& shape) {
-  const int next = (corner + 1) % 3, previous = (corner + 2) % 3;
-  const double radius = spheres.radii[facet[corner]];
-  if (2.0 * shape.area < radius * shape.side[next]) return -1.0;
-  double part = 0.5 * radius * radius * shape.angle[corner], cut = 0.0;
-  for (const auto& [other, distance] : {std::pair(next, shape.side[corner]),
-                                        std::pair(previous, shape.side[previous])}) {
-    const double r = spheres.radii[facet[other]];
-    if (distance >= radius + r) continue;
-    const double chord = 0.5 * (distance + (radius - r) * (radius + r) / distance);
-    if (chord <= 0.0) return -1.0;
-    if (chord >= radius) continue;
-    const double half = std::sqrt((radius - chord) * (radius + chord));
-    const double angle = arctangent(half, chord);
-    part -= 0.5 * (radius * radius * angle - chord * half);
-    cut += angle;
-  }
-  return cut <= shape.angle[corner] ? part : -1.0;
-}
 
 /// Centre of a throat's first or second pore; with periodic axes, of the image at the throat.
 Eigen::Vector3d pore_centre(const PoreNetwork& network, int t, int side) {
@@ -250,7 +143,7 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
     for (int k = 0; k < 3; ++k) {
       if (is_wall(facet[k])) continue;
       double part = walled ? -1.0 : disc_part_of_triangle(facet, k, spheres, shape);
-      if (part < 0.0) part = disc_part(facet, k, spheres, normal, area);
+      if (part < 0.0) part = disc_part(facet, k, spheres, normal, area).area;
       discs += throats.facet_disc[f][k] = part;
     }
     throats.area[t] += area;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/volume_rates.hpp"
 
+#include "network/facets.hpp"
 #include "physics/cell_volumes.hpp"
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
 namespace pfv {
 
@@ -30,96 +31,142 @@ VolumeRateMatrix volume_rate_matrix(const PoreNetwork& network, const Spheres& s
   return matrix;
 }
 
-void volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
-                  const Box& box, Team& team, Eigen::VectorXd& rates) {
-  std::array<Eigen::Vector3d, 6> wall_velocity;
-  for (int face = 0; face < 6; ++face)
-    wall_velocity[face] = box.faces[face].velocity * Eigen::Vector3d::Unit(face / 2);
+namespace {
+
+Eigen::Index column_of(Vertex mover, const Motion& motion) {
+  return is_wall(mover) ? spheres_in(motion) + wall_number(mover) : Eigen::Index(mover);
+}
+
+}  // namespace
+
+void volume_rates(const VolumeRateMatrix& matrix, const Motion& motion, Team& team,
+                  Eigen::VectorXd& rates) {
   rates.resize(matrix.rows());
   const int* const begin = matrix.row_begin.data();
   team.run_rows(begin, matrix.rows(), [&](int first, int last) {
     for (int pore = first; pore < last; ++pore) {
       double rate = 0.0;
-      for (int entry = begin[pore]; entry < begin[pore + 1]; ++entry) {
-        const Vertex mover = matrix.mover[entry];
-        rate += is_wall(mover) ? matrix.area.col(entry).dot(wall_velocity[wall_number(mover)])
-                               : matrix.area.col(entry).dot(velocities.col(mover));
-      }
+      for (int e = begin[pore]; e < begin[pore + 1]; ++e)
+        rate += matrix.area.col(e).dot(motion.col(column_of(matrix.mover[e], motion)).head<3>());
       rates[pore] = rate;
     }
   });
 }
 
-Eigen::Matrix3Xd with_face_velocities(const Eigen::Matrix3Xd& velocities, const Box& box) {
-  Eigen::Matrix3Xd all = Eigen::Matrix3Xd::Zero(3, velocities.cols() + 6);
-  all.leftCols(velocities.cols()) = velocities;
-  for (int face = 0; face < 6; ++face)
-    all(face / 2, velocities.cols() + face) = box.faces[face].velocity;
-  return all;
-}
-
-namespace {
-
-/// Visits (pore, area, velocity) of each mover of each pore.
-template <class Visit>
-void for_each_mover(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion,
-                    Visit&& visit) {
-  const Eigen::Index walls = motion.cols() - 6;
-  for (int pore = 0; pore < matrix.rows(); ++pore)
-    for (int entry = matrix.row_begin[pore]; entry < matrix.row_begin[pore + 1]; ++entry) {
-      const Vertex mover = matrix.mover[entry];
-      visit(pore, matrix.area.col(entry),
-            motion.col(is_wall(mover) ? walls + wall_number(mover) : Eigen::Index(mover)));
-    }
-}
-
-}  // namespace
-
-Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion) {
-  Eigen::VectorXd rates = Eigen::VectorXd::Zero(matrix.rows());
-  for_each_mover(matrix, motion, [&](int pore, const auto& area, const auto& velocity) {
-    rates[pore] += area.dot(velocity);
-  });
-  return rates;
-}
-
-double gross_volume_rate(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion) {
+double gross_rate(const VolumeRateMatrix& matrix, const Motion& motion) {
   double sum = 0.0;
-  for_each_mover(matrix, motion, [&](int, const auto& area, const auto& velocity) {
-    sum += area.norm() * velocity.norm();
-  });
+  for (Eigen::Index e = 0; e < matrix.area.cols(); ++e)
+    sum += matrix.area.col(e).norm() *
+           motion.col(column_of(matrix.mover[static_cast<std::size_t>(e)], motion)).head<3>().norm();
   return sum;
 }
 
-Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
-                             const Box& box) {
-  Team alone;
-  Eigen::VectorXd rates;
-  volume_rates(matrix, velocities, box, alone, rates);
-  return rates;
+Vector6d Bases::load(int base) const {
+  Vector6d load;
+  load.head<3>() = area[base] * outward_normal(static_cast<Face>(face[base]));
+  load.tail<3>() = moment.col(base);
+  return load;
 }
 
-std::vector<double> base_areas(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                               const Spheres& spheres) {
+Bases measure_bases(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                    const Spheres& spheres) {
   const auto& contacts = boundaries.contacts;
-  std::vector<double> areas(contacts.size(), 0.0);
+  Bases bases;
+  bases.area.assign(contacts.size(), 0.0);
+  bases.moment = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(contacts.size()));
+  for (const auto& contact : contacts) {
+    bases.pore.push_back(contact.pore);
+    bases.face.push_back(contact.face);
+  }
   for (int c = 0; c < network.cells(); ++c) {
     const auto& vertices = network.cell_vertices[c];
     if (!is_wall(vertices[3])) continue;  // walls come last
     const CellVolume cell = cell_volume(vertices, spheres);
     for (int i = 1; i < 4; ++i) {
       if (!is_wall(vertices[i])) continue;
-      const int face = wall_number(vertices[i]);
+      const int face = wall_number(vertices[i]), axis = face / 2;
       const std::pair<int, int> key{network.cell_pore[c], face};
-      const auto contact = std::lower_bound(
+      const auto found = std::lower_bound(
           contacts.begin(), contacts.end(), key,
           [](const auto& a, const auto& b) { return std::make_pair(a.pore, a.face) < b; });
+      const auto contact = found - contacts.begin();
       // dV / d(position of the wall) is the area of the cell's base
-      areas[contact - contacts.begin()] +=
-          cell.gradient[i].dot(outward_normal(static_cast<Face>(face)));
+      bases.area[contact] += cell.gradient[i].dot(outward_normal(static_cast<Face>(face)));
+      FacetCorners base = corners_of(facet_opposite(vertices, i), spheres);
+      for (int corner = 0; corner < base.count; ++corner)
+        base.at[corner][axis] = face % 2 ? spheres.edges[axis] : 0.0;
+      bases.moment.col(contact) -= moment_vector(base);  // that facet's normal points away from the wall
     }
   }
-  return areas;
+  return bases;
+}
+
+EntriesByPore entries_by_pore(const ForceMatrix& forces, int pores) {
+  EntriesByPore order;
+  order.begin.assign(pores + 1, 0);
+  for (const int pore : forces.pore) ++order.begin[pore + 1];
+  for (int pore = 0; pore < pores; ++pore) order.begin[pore + 1] += order.begin[pore];
+  std::vector<int> next(order.begin.begin(), order.begin.end() - 1);
+  order.entry.resize(forces.pore.size());
+  for (std::size_t e = 0; e < forces.pore.size(); ++e)
+    order.entry[next[forces.pore[e]]++] = static_cast<int>(e);
+  return order;
+}
+
+namespace {
+
+/// A pore's parts are added in the order of the rows, as in `share`.
+void scatter(const ForceMatrix& forces, const Motion& motion, Eigen::VectorXd& rates) {
+  for (int row = 0; row < forces.rows(); ++row) {
+    const Vector6d own = motion.col(row);
+    for (int e = forces.row_begin[row]; e < forces.row_begin[row + 1]; ++e)
+      rates[forces.pore[e]] += forces.value.col(e).dot(own);
+  }
+}
+
+void share(const ForceMatrix& forces, const EntriesByPore& entries, const Motion& motion, Team& team,
+           Eigen::VectorXd& rates) {
+  std::vector<double> products(forces.pore.size());
+  team.run_rows(forces.row_begin.data(), forces.rows(), [&](int first, int last) {
+    for (int row = first; row < last; ++row) {
+      const Vector6d own = motion.col(row);
+      for (int e = forces.row_begin[row]; e < forces.row_begin[row + 1]; ++e)
+        products[e] = forces.value.col(e).dot(own);
+    }
+  });
+  team.run_rows(entries.begin.data(), static_cast<int>(rates.size()), [&](int first, int last) {
+    for (int pore = first; pore < last; ++pore)
+      for (int e = entries.begin[pore]; e < entries.begin[pore + 1]; ++e)
+        rates[pore] += products[entries.entry[e]];
+  });
+}
+
+}  // namespace
+
+void reciprocal_rates(const ForceMatrix& forces, const EntriesByPore& entries, const Bases& bases,
+                      const Motion& motion, Team& team, Eigen::VectorXd& rates) {
+  rates.setZero();
+  if (team.threads() == 1)
+    scatter(forces, motion, rates);
+  else
+    share(forces, entries, motion, team, rates);
+  const Eigen::Index spheres = spheres_in(motion);
+  for (int b = 0; b < bases.size(); ++b)
+    if (bases.face[b] >= 0) rates[bases.pore[b]] += bases.load(b).dot(motion.col(spheres + bases.face[b]));
+}
+
+double gross_rate(const ForceMatrix& forces, const Bases& bases, const Motion& motion) {
+  double sum = 0.0;
+  for (int row = 0; row < forces.rows(); ++row) {
+    const Vector6d own = motion.col(row).cwiseAbs();
+    for (int e = forces.row_begin[row]; e < forces.row_begin[row + 1]; ++e)
+      sum += forces.value.col(e).cwiseAbs().dot(own);
+  }
+  const Eigen::Index spheres = spheres_in(motion);
+  for (int b = 0; b < bases.size(); ++b)
+    if (bases.face[b] >= 0)
+      sum += bases.load(b).cwiseAbs().dot(motion.col(spheres + bases.face[b]).cwiseAbs());
+  return sum;
 }
 
 }  // namespace pfv

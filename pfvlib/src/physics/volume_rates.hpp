@@ -4,13 +4,48 @@
 #include "network/pore_boundaries.hpp"
 #include "network/spheres.hpp"
 #include "parallel/team.hpp"
-#include "pfv/box.hpp"
 #include "pfv/network.hpp"
+#include "physics/force_matrix.hpp"
+#include "physics/rigid_motion.hpp"
 
 #include <Eigen/Core>
 #include <vector>
 
 namespace pfv {
+
+// dV/dt of each pore from the velocities of spheres and faces.
+//
+// The fluid part of a facet moves with what drags it: dV/dt = S^T v, the transpose of the forces F = S p, as
+// Stokes flow demands (Lorentz' reciprocal theorem), and a face's base with the face. Over all pores it adds
+// up to the rate of the box's volume; moving all together, turning included, gives 0. The papers take the
+// derivative of the tetrahedra instead, E = dV/dx, which contradicts their own S (doc/method.md).
+
+/// What the pores rest on: the parts of the faces.
+struct Bases {
+  std::vector<int> pore, face;
+  std::vector<double> area;  ///< m²
+  Eigen::Matrix3Xd moment;   ///< of a unit pressure on each about the corner of the box, m³
+
+  int size() const { return static_cast<int>(pore.size()); }
+  Vector6d load(int base) const;  ///< of a unit pressure on it
+};
+
+/// One entry for each of `boundaries.contacts` in their order; those of regions have no area.
+Bases measure_bases(const PoreNetwork& network, const PoreBoundaries& boundaries,
+                    const Spheres& spheres);
+
+/// The entries of S by pores: what a team needs to share S^T v.
+struct EntriesByPore {
+  std::vector<int> begin, entry;
+};
+EntriesByPore entries_by_pore(const ForceMatrix& forces, int pores);
+
+/// S^T v and what the bases sweep, m³/s, one entry a pore. `entries` may be empty for a team of one; no byte
+/// depends on the team. Cost: a pass over S.
+void reciprocal_rates(const ForceMatrix& forces, const EntriesByPore& entries, const Bases& bases,
+                      const Motion& motion, Team& team, Eigen::VectorXd& rates);
+/// What that is summed from, m³/s: sums of the rates are exact to its round-off.
+double gross_rate(const ForceMatrix& forces, const Bases& bases, const Motion& motion);
 
 /// E = dV/dx (thesis eqs. 4.4-4.8) in compressed rows, one a pore: the area vectors (m²) that the
 /// velocities of spheres and walls are multiplied with.
@@ -21,24 +56,11 @@ struct VolumeRateMatrix {
 
   int rows() const { return static_cast<int>(row_begin.size()) - 1; }
 };
-
 VolumeRateMatrix volume_rate_matrix(const PoreNetwork& network, const Spheres& spheres);
 
-/// dV/dt = E v, m³/s, one entry a pore. `velocities`: 3 x N spheres of the network, m/s; walls move
-/// with the face velocities of the box.
-void volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
-                  const Box& box, Team& team, Eigen::VectorXd& rates);
-Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,
-                             const Box& box);
-/// The same for given velocities of the walls: 3 x (N + 6), the last six those of xlo ... zhi.
-Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion);
-/// What that is summed from, m³/s: the sum of |area||velocity|. The sums above are exact to its round-off.
-double gross_volume_rate(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion);
-/// Velocities (m/s) of the spheres followed by those of the six faces: 3 x (N + 6).
-Eigen::Matrix3Xd with_face_velocities(const Eigen::Matrix3Xd& velocities, const Box& box);
-
-/// Base area (m²) of each pore on each of its faces, in the order of `boundaries.contacts`.
-std::vector<double> base_areas(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                               const Spheres& spheres);
+/// dV/dt = E v, m³/s, one entry a pore; walls move along their normals.
+void volume_rates(const VolumeRateMatrix& matrix, const Motion& motion, Team& team,
+                  Eigen::VectorXd& rates);
+double gross_rate(const VolumeRateMatrix& matrix, const Motion& motion);
 
 }  // namespace pfv

@@ -10,42 +10,51 @@ namespace pfv {
 
 namespace {
 
-/// E B^1/2 by unknowns: the rows of E^T that yield, with the pores of one unknown added up, and the
+/// S^T B^1/2 by unknowns: the rows of S that yield, with the pores of one unknown added up, and the
 /// same entries once more by unknown.
 struct YieldingRows {
   struct Entry {
     int index;  ///< unknown, or row
-    Eigen::Vector3d value;
+    Vector6d value;
   };
   std::vector<std::vector<Entry>> of_row;
   std::vector<std::vector<Entry>> of_unknown;
 };
 
-YieldingRows yielding_rows(const Unknowns& unknowns, const ForceMatrix& energy_forces,
-                           const Eigen::VectorXd& yielding) {
+/// Adds the entries of one row that yields, those of one unknown summed up.
+void add_row(YieldingRows& rows, std::vector<YieldingRows::Entry>& entries) {
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const auto& a, const auto& b) { return a.index < b.index; });
+  auto& merged = rows.of_row.emplace_back();
+  for (const auto& entry : entries) {
+    if (!merged.empty() && merged.back().index == entry.index)
+      merged.back().value += entry.value;
+    else
+      merged.push_back(entry);
+  }
+  const int number = static_cast<int>(rows.of_row.size()) - 1;
+  for (const auto& entry : merged) rows.of_unknown[entry.index].push_back({number, entry.value});
+}
+
+YieldingRows yielding_rows(const Unknowns& unknowns, const ForceMatrix& forces, const Bases& bases,
+                           const Matrix6Xd& yielding) {
+  const int spheres = forces.rows() - 6;
   YieldingRows rows;
   rows.of_unknown.resize(unknowns.count);
   std::vector<YieldingRows::Entry> entries;
-  for (int row = 0; row < energy_forces.rows(); ++row) {
-    if (!(yielding[row] > 0.0)) continue;
+  for (int row = 0; row < forces.rows(); ++row) {
+    if (!(yielding.col(row).array() > 0.0).any()) continue;
+    const Vector6d root = yielding.col(row).cwiseSqrt();
     entries.clear();
-    for (int e = energy_forces.row_begin[row]; e < energy_forces.row_begin[row + 1]; ++e) {
-      const int unknown = unknowns.of_pore[energy_forces.pore[e]];
-      if (unknown != Unknowns::imposed)
-        entries.push_back({unknown, std::sqrt(yielding[row]) * energy_forces.value.col(e)});
-    }
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const auto& a, const auto& b) { return a.index < b.index; });
-    auto& merged = rows.of_row.emplace_back();
-    for (const auto& entry : entries) {
-      if (!merged.empty() && merged.back().index == entry.index)
-        merged.back().value += entry.value;
-      else
-        merged.push_back(entry);
-    }
-    const int number = static_cast<int>(rows.of_row.size()) - 1;
-    for (const auto& entry : merged)
-      rows.of_unknown[entry.index].push_back({number, entry.value});
+    const auto add = [&](int pore, const Vector6d& load) {
+      if (unknowns.of_pore[pore] != Unknowns::imposed)
+        entries.push_back({unknowns.of_pore[pore], root.cwiseProduct(load)});
+    };
+    for (int e = forces.row_begin[row]; e < forces.row_begin[row + 1]; ++e)
+      add(forces.pore[e], forces.value.col(e));
+    for (int b = 0; row >= spheres && b < bases.size(); ++b)
+      if (bases.face[b] == row - spheres) add(bases.pore[b], bases.load(b));
+    add_row(rows, entries);
   }
   return rows;
 }
@@ -57,11 +66,11 @@ bool yields_to(const Isolated& isolated, const Unknowns& unknowns, const Yieldin
   for (const int pore : isolated.pores) members.push_back(unknowns.of_pore[pore]);
   std::sort(members.begin(), members.end());
   members.erase(std::unique(members.begin(), members.end()), members.end());
-  std::map<int, std::pair<Eigen::Vector3d, double>> sums;  // by row: the sum and its largest part
+  std::map<int, std::pair<Vector6d, double>> sums;  // by row: the sum and its largest part
   for (const int unknown : members)
     for (const auto& entry : rows.of_unknown[unknown]) {
       auto& [sum, largest] =
-          sums.try_emplace(entry.index, Eigen::Vector3d::Zero(), 0.0).first->second;
+          sums.try_emplace(entry.index, Vector6d::Zero(), 0.0).first->second;
       sum += entry.value;
       largest = std::max(largest, entry.value.norm());
     }
@@ -74,9 +83,9 @@ bool yields_to(const Isolated& isolated, const Unknowns& unknowns, const Yieldin
 }  // namespace
 
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
-                                 const ForceMatrix& energy_forces,
-                                 const Eigen::VectorXd& yielding) {
-  const YieldingRows rows = yielding_rows(unknowns, energy_forces, yielding);
+                                 const ForceMatrix& forces, const Bases& bases,
+                                 const Matrix6Xd& yielding) {
+  const YieldingRows rows = yielding_rows(unknowns, forces, bases, yielding);
   const SymmetricMatrix& g = system.matrix;
   ImplicitSystem result;
   std::vector<double> pins(unknowns.count, 0.0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "physics/force_matrix.hpp"
+#include "physics/volume_rates.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/pressure_system.hpp"
 
@@ -10,7 +11,7 @@
 
 namespace pfv {
 
-/// A = G + E B E^T, symmetric positive definite: pressures that know how the grains yield to them
+/// A = G + S^T B S, symmetric positive definite: pressures that know how the grains yield to them
 /// within a time step. The pattern joins all pores around a sphere, or on a face, that yields: 60 to 80
 /// entries a row.
 struct ImplicitSystem {
@@ -20,10 +21,10 @@ struct ImplicitSystem {
   std::vector<Isolated> isolated;
 };
 
-/// `system`: G with storage. `energy_forces`: E^T. `yielding`: the diagonal of B, dt/m (s/kg) of each
-/// row of E^T, 0 for what no force moves.
+/// `system`: G with storage. `forces`: S, to which the pressures on the faces come. `yielding`: the diagonal of
+/// B, dt over mass (s/kg) or inertia (s/(kg m²)) for each row of S, 0 for what no force moves.
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
-                                 const ForceMatrix& energy_forces,
-                                 const Eigen::VectorXd& yielding);
+                                 const ForceMatrix& forces, const Bases& bases,
+                                 const Matrix6Xd& yielding);
 
 }  // namespace pfv
