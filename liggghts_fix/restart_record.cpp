@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 
+#include <array>
 #include <cstring>
 
 namespace LAMMPS_NS {
@@ -48,7 +49,8 @@ std::vector<double> pack(const PfvRestartRecord& record) {
     data.insert(data.end(), values.begin(), values.end());
   };
   append(record.last_positions);
-  data.push_back(record.flow.volume_debt);
+  append(std::array<double, 3>{record.flow.volume_debt, record.flow.fluid_at_start,
+                               record.flow.fluid_came_in});
   data.push_back(static_cast<double>(record.flow.pore_pressures.size()));
   append(record.flow.pore_pressures);
   data.push_back(static_cast<double>(record.last_grains.tags.size()));
@@ -78,6 +80,8 @@ PfvRestartRecord unpack(const char* bytes) {
   record.elapsed = reader.next();
   for (double& position : record.last_positions) position = reader.next();
   record.flow.volume_debt = reader.next();
+  record.flow.fluid_at_start = reader.next();
+  record.flow.fluid_came_in = reader.next();
   record.flow.pore_pressures = reader.list<double>(reader.count());
   const std::size_t grains = reader.count();
   record.last_grains.tags = reader.list<std::int64_t>(grains);

@@ -33,6 +33,7 @@ struct FlowState {
   std::int64_t retriangulations = 0;       ///< triangulations after the first
   std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
   double volume_debt = 0.0;                ///< m³ that implicit steps still owe the pores
+  double fluid_at_start = 0.0, fluid_came_in = 0.0;  ///< m³, for the fluid's balance; 0: it begins anew
 };
 
 /// A face that moves freely along its axis: a piston. By default its velocity is prescribed.

@@ -55,6 +55,10 @@ struct Report {
   double porosity = 0, pore_volume = 0, solid_area = 0;
   double inflow = 0, outflow = 0, volume_rate_sum = 0, storage_rate = 0;
   double mass_error = 0;
+  /// The fluid in the box, as if it had no pressure: the box less the whole volumes of the grains with their
+  /// centre in it; what came in since the first solve, less what left; and what is there beyond its value at
+  /// the start, this and what is compressed, over the fluid's volume. Absent for darcy_grid.
+  std::optional<double> fluid_volume, fluid_came_in, fluid_balance_error;
   std::optional<double> permeability;
   std::optional<Eigen::Matrix3d> permeability_tensor;  ///< m², periodic boxes; 0 along other axes
   /// Of the permeability, or of the tensor without one: Stokes flow is expected within a factor of

@@ -179,6 +179,11 @@ Report make_report(FlowData& flow) {
   if (flow.built->storage.size() > 0)
     report.storage_rate =
         flow.built->storage.dot(flow.pressures - flow.previous_pressures + balance.correction);
+  report.fluid_volume =
+      fluid_space(flow.solved_box.volume(), flow.built->grains.spheres);
+  report.fluid_came_in = flow.account.came_in;
+  report.fluid_balance_error =
+      flow.fluid_missing() / std::max(*report.fluid_volume, 0.01 * flow.solved_box.volume());
   report.mass_error = mass_error(totals, report.volume_rate_sum, report.storage_rate, traffic(flow));
   add_permeability(report, flow, totals, balance.throat_fluxes);
   if (flow.forces.total.cols() > 0) report.force_sum = flow.forces.total.rowwise().sum();

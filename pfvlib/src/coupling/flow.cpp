@@ -102,11 +102,11 @@ const Forces& Flow::evaluate(const Packing& packing, double dt) {
   return data_->compute(packing, dt, false);
 }
 
-void Flow::rebuild() { data_->stale = true; }
+void Flow::rebuild() { data_->stale = data_->moved_by_host = true; }
 
 void Flow::set_box(const Box& box) {
   check(box);
-  if (!same_kinds(data_->box, box)) data_->stale = true;
+  if (!same_kinds(data_->box, box)) data_->stale = data_->moved_by_host = true;
   data_->box = box;
 }
 
@@ -129,7 +129,8 @@ FlowState Flow::state() const {
     return std::vector<double>(values.data(), values.data() + values.size());
   };
   return {data_->time, data_->strain, data_->retriangulations,
-          list(data_->old_pressures), data_->volume_debt};
+          list(data_->old_pressures), data_->volume_debt, data_->account.at_start,
+          data_->account.came_in};
 }
 
 void Flow::set_state(FlowState state) {
@@ -138,6 +139,7 @@ void Flow::set_state(FlowState state) {
   data_->retriangulations = state.retriangulations;
   data_->pending_pressures = std::move(state.pore_pressures);
   data_->volume_debt = state.volume_debt;
+  data_->account = {state.fluid_at_start != 0.0, state.fluid_at_start, state.fluid_came_in, 0.0};
 }
 
 const Forces& Flow::forces() const {

@@ -25,6 +25,7 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     if (!solved) stale = true;  // after a failure the network may be no longer that of the grains
     solved = false;
     balance_.reset();
+    swept = advance && coupling == Coupling::explicit_step ? swept_volume(step) : 0.0;
     update_network(packing, step, advance);
     factor_pressures(*built, build_settings(), step, {counts, seconds});
     counts.pinned_pores = 0;
@@ -62,6 +63,10 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
 void FlowData::end_step(double step) {
   time += step;
   volume_debt = unpaid_growth;
+  account.came_in += step * rates.sum();
+  account.ahead = stages > 1 || solved_implicitly ? step * rates.sum() : 0.0;
+  if (built->storage.size() > 0)
+    account.came_in += step * built->storage.dot(pressures - previous_pressures);
   add_strain(step);
   if (fluid.bulk_modulus) old_pressures = pressures;
 }
@@ -92,12 +97,13 @@ void FlowData::rebuild_now(const Packing& packing) {
   next.reset();
   stale = true;
   std::unique_ptr<LinearSolver> solver = built ? std::move(built->solver) : nullptr;
+  if (built) former_grains = built->grains.spheres;
   if (old_pressures.size() == 0) built.reset();  // its memory is the new one's
   auto fresh = derive_network(packing, build_settings(), {counts, seconds});
   fresh->former_solver = std::move(solver);
   packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
   take_up(std::move(fresh));
-  stale = false;
+  stale = moved_by_host = false;
   strain = strain_taken_over = 0.0;
 }
 
@@ -120,6 +126,7 @@ void FlowData::take_up_next() {
   if (fresh->solver) fresh->solver->share_with(team);
   wall_waited += wall_seconds() - start;
   next.reset();
+  former_grains = built->grains.spheres;
   strain = changes_before_next.size() > 0 ? mean_strain(volume_changes - changes_before_next)
                                           : strain - strain_before_next;
   strain_taken_over = strain;
@@ -139,6 +146,8 @@ void FlowData::take_up(std::unique_ptr<BuiltNetwork> fresh) {
     old_pressures.resize(0);
   pending_pressures.clear();
   if (fluid.bulk_modulus && old_pressures.size() == 0) old_pressures.setZero(pores);
+  settle_account(former_grains ? &*former_grains : nullptr, swept);
+  former_grains.reset();
   if (options.strain_measure == StrainMeasure::mean) volume_changes.setZero(pores);
   solution.setZero(built->unknowns.count);  // no trace of the old network in what follows
   counts.degenerate_throats = built->conductances.degenerate;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/background_rebuild.hpp"
+#include "coupling/fluid_account.hpp"
 #include "physics/chebyshev_stages.hpp"
 #include "pfv/flow.hpp"
 
@@ -44,6 +45,10 @@ struct FlowData {
 
   std::unique_ptr<BuiltNetwork> built;
   bool stale = true;
+  bool moved_by_host = false;  ///< the host has asked for a new network
+  FluidAccount account;
+  std::optional<Spheres> former_grains;  ///< of the network before, while the next is taken up
+  double swept = 0.0;  ///< by the faces in the step that has just ended and is not in the account yet, m³
   bool had_network = false;
   std::optional<BackgroundRebuild> next;  ///< the network that comes after `built`
   int steps_to_next = 0;                  ///< until it is taken up
@@ -93,6 +98,9 @@ struct FlowData {
     return solved_implicitly ? built->implicit->system.matrix : built->system.matrix;
   }
   void require_result() const;
+  /// What is in the box beyond what was at the start and came in, m³: 0 but for what the volume rates do
+  /// not know of.
+  double fluid_missing() const;
   /// Of the relative pressures on what the faces normal to each axis have grown by, N.
   Eigen::Vector3d forces_on_growth() const;
   /// Throws InputError without a result. Cost: one solve and a pass over the throats, once a call.
@@ -110,6 +118,10 @@ struct FlowData {
   void begin_next(const Packing& packing, double step);
   void take_up_next();
   void take_up(std::unique_ptr<BuiltNetwork> fresh);
+  double swept_volume(double step) const;
+  void settle_account(const Spheres* before, double swept);
+  /// What these pressures have pressed into the pores of a network, m³.
+  double compressed_in(const BuiltNetwork& network, const Eigen::VectorXd& values) const;
   void refuse_undetermined(bool moving_now) const;
   void refuse_isolated(const std::vector<Isolated>& held) const;
   void measure_grown_areas(double ahead);

@@ -133,7 +133,7 @@ const Fluid& DarcyGrid::fluid() const { return data_->fluid; }
 const DarcyOptions& DarcyGrid::grid() const { return data_->grid_options; }
 double DarcyGrid::time() const { return data_->time; }
 
-FlowState DarcyGrid::state() const { return {data_->time, 0.0, data_->looks, {}, 0.0}; }
+FlowState DarcyGrid::state() const { return {data_->time, 0.0, data_->looks, {}, 0.0, 0.0, 0.0}; }
 
 void DarcyGrid::set_state(FlowState state) {
   data_->time = state.time;
