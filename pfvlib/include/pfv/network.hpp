@@ -20,6 +20,17 @@ inline Vertex wall_vertex(int face) { return -1 - face; }
 /// on a face, a slab on an edge or a block in a corner of the box. A *pore* is a cell, or several cells
 /// that share one dual vertex (cospherical sets: they hold one pressure). A *facet* is shared by two
 /// cells; a *throat* is the planar polygon between two pores: one facet, or several pieces of it.
+///
+/// All is numbered from the spheres' ids and places and the box alone, so that a network and what is
+/// computed on it do not depend on the order of the packing's columns, nor on who triangulated:
+/// - cells by the first of their spheres along a Hilbert curve through the box, then by the second, and so
+///   on, walls last; pores by their first cell;
+/// - the vertices of a cell by ids, then walls from xlo to zhi, but for the last two spheres (or walls, with
+///   fewer than three spheres), which the orientation may exchange; a facet of three spheres begins with
+///   its lowest id; images of one sphere count by place;
+/// - a throat goes from the pore with the smaller number to the larger, and throats stand by their first
+///   pores, then by their second ones (then by the image). The facets of a throat stand by the smaller of
+///   their two cells; within a merged pore that is cell 0.
 struct PoreNetwork {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< lower corner of the box: all places below
                                                      ///< are relative to it, m
@@ -50,7 +61,7 @@ struct PoreNetwork {
                                     ///< centre of the second pore to get its image at the throat, m
   std::vector<int> throat_facets;
 
-  std::vector<int> hidden;  ///< spheres whose power cell is empty: no vertices of any cell
+  std::vector<int> hidden;  ///< spheres whose power cell is empty, by ids: no vertices of any cell
 
   int cells() const { return static_cast<int>(cell_vertices.size()); }
   int pores() const { return static_cast<int>(pore_faces.size()); }

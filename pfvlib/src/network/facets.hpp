@@ -19,10 +19,11 @@ inline std::array<Vertex, 3> facet_opposite(const std::array<Vertex, 4>& cell, i
   return facet;
 }
 
-/// The same facet with its normal turned round; spheres stay first.
+/// The same facet with its normal turned round; spheres stay first, and where all three are spheres the
+/// first stays where it is.
 inline std::array<Vertex, 3> reversed(std::array<Vertex, 3> facet) {
-  const bool slab = is_wall(facet[1]);
-  std::swap(facet[slab ? 1 : 0], facet[slab ? 2 : 1]);
+  const bool one_wall = is_wall(facet[2]) && !is_wall(facet[1]);
+  std::swap(facet[1], facet[one_wall ? 0 : 2]);
   return facet;
 }
 

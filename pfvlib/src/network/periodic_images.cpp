@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "network/periodic_images.hpp"
 
+#include "network/canonical_order.hpp"
 #include "network/facets.hpp"
 
 #include <algorithm>
@@ -136,18 +137,21 @@ bool repeats(const PoreNetwork& all, const Spheres& images, const std::vector<in
 struct FoldedThroat {
   int throat;  ///< of the full network
   bool turned;
-  std::array<int, 2> pores;
-  Eigen::Vector3d offset;
+  Way way;
+  bool operator<(const FoldedThroat& other) const {
+    return std::tie(way, throat) < std::tie(other.way, other.throat);
+  }
 };
 
 void copy_throats(const PoreNetwork& all, const std::vector<FoldedThroat>& throats,
-                  const std::vector<int>& home_cell, PoreNetwork& network) {
+                  const std::vector<int>& home_cell, const Spheres& spheres,
+                  PoreNetwork& network) {
   network.throat_offsets.resize(3, static_cast<Eigen::Index>(throats.size()));
   network.throat_facets = {0};
   const auto cell = [&](int c) { return home_cell[c]; };
   for (const FoldedThroat& throat : throats) {
-    network.throat_offsets.col(network.throats()) = throat.offset;
-    network.throat_pores.push_back(throat.pores);
+    network.throat_offsets.col(network.throats()) = displacement(throat.way.shift, spheres);
+    network.throat_pores.push_back({throat.way.from, throat.way.to});
     for (int f = all.throat_facets[throat.throat]; f < all.throat_facets[throat.throat + 1]; ++f) {
       const auto& facet = all.facet_vertices[f];
       const auto& cells = all.facet_cells[f];
@@ -186,14 +190,15 @@ void copy_pores_and_cells(const PoreNetwork& all, const std::vector<int>& home,
   }
 }
 
-void find_hidden(const Images& images, int spheres, PoreNetwork& network) {
+void find_hidden(const Images& images, const Spheres& spheres, PoreNetwork& network) {
   network.vertex_sphere = images.original;
-  std::vector<char> seen(spheres, 0);
+  std::vector<char> seen(spheres.size(), 0);
   for (const auto& cell : network.cell_vertices)
     for (const Vertex vertex : cell)
       if (!is_wall(vertex)) seen[images.original[vertex]] = 1;
-  for (int k = 0; k < spheres; ++k)
+  for (int k = 0; k < spheres.size(); ++k)
     if (!seen[k]) network.hidden.push_back(k);
+  sort_by_ids(network.hidden, spheres);
 }
 
 }  // namespace
@@ -274,15 +279,15 @@ bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, 
       if (first.shift != here || first.pore > second.pore ||
           (first.pore == second.pore && second.shift <= here))
         continue;
-      throats.push_back({t, turned, {first.pore, second.pore},
-                         displacement(second.shift, spheres)});
+      throats.push_back({t, turned, {first.pore, second.pore, second.shift}});
       break;
     }
   }
+  std::sort(throats.begin(), throats.end());  // images stand elsewhere in the full network
   std::vector<int> home_cell(all.cells(), -1);
   copy_pores_and_cells(all, home, home_cell, network);
-  copy_throats(all, throats, home_cell, network);
-  find_hidden(images, spheres.size(), network);
+  copy_throats(all, throats, home_cell, spheres, network);
+  find_hidden(images, spheres, network);
   return true;
 }
 

@@ -111,22 +111,41 @@ Facet towards_larger_pore(Facet facet, const std::vector<int>& cell_pore) {
   return {reversed(facet.vertices), {facet.cells[1], facet.cells[0]}};
 }
 
+std::array<int, 2> pores_of(const Facet& facet, const std::vector<int>& cell_pore) {
+  return {cell_pore[facet.cells[0]], cell_pore[facet.cells[1]]};
+}
+
+/// Sorts facets by their pores, those within a pore last, and keeps the order of those with the same
+/// pores. Returns the number of those between two pores.
+int sort_by_pores(std::vector<Facet>& facets, const std::vector<int>& cell_pore, int pores) {
+  std::vector<int> begin(pores + 2, 0);
+  const auto bin_of = [&](const Facet& facet) {
+    const auto [first, second] = pores_of(facet, cell_pore);
+    return first == second ? pores : first;
+  };
+  for (const Facet& facet : facets) ++begin[bin_of(facet) + 1];
+  for (int bin = 0; bin <= pores; ++bin) begin[bin + 1] += begin[bin];
+  std::vector<Facet> sorted(facets.size());
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (const Facet& facet : facets) {
+    // a pore has few throats: each new facet moves past those towards larger pores
+    const int bin = bin_of(facet), second = cell_pore[facet.cells[1]];
+    int place = next[bin]++;
+    if (bin < pores)
+      for (; place > begin[bin] && cell_pore[sorted[place - 1].cells[1]] > second; --place)
+        sorted[place] = sorted[place - 1];
+    sorted[place] = facet;
+  }
+  facets = std::move(sorted);
+  return begin[pores];
+}
+
 /// Pieces of the polygon between two pores stand together and make one throat.
 void group_facets_into_throats(PoreNetwork& network, std::vector<Facet>& facets) {
-  const auto pores = [&](const Facet& facet) {
-    return std::array<int, 2>{network.cell_pore[facet.cells[0]],
-                              network.cell_pore[facet.cells[1]]};
-  };
-  const auto internal = [&](const Facet& facet) { return pores(facet)[0] == pores(facet)[1]; };
   for (Facet& facet : facets) facet = towards_larger_pore(facet, network.cell_pore);
-  const auto last_open = std::stable_partition(facets.begin(), facets.end(),
-                                               [&](const Facet& f) { return !internal(f); });
-  std::stable_sort(facets.begin(), last_open,
-                   [&](const Facet& a, const Facet& b) { return pores(a) < pores(b); });
-
-  const int open = static_cast<int>(last_open - facets.begin());
+  const int open = sort_by_pores(facets, network.cell_pore, network.pores());
   for (int f = 0; f < open; ++f) {
-    const std::array<int, 2> both = pores(facets[f]);
+    const std::array<int, 2> both = pores_of(facets[f], network.cell_pore);
     if (network.throat_pores.empty() || network.throat_pores.back() != both) {
       network.throat_pores.push_back(both);
       network.throat_facets.push_back(f);

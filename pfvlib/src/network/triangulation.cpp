@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "network/triangulation.hpp"
 
+#include "network/canonical_order.hpp"
 #include "pfv/error.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -26,7 +27,7 @@ using CellBase = CGAL::Triangulation_cell_base_with_info_3<
     int, Kernel, CGAL::Regular_triangulation_cell_base_3<Kernel>>;
 using Regular =
     CGAL::Regular_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
-using Site = std::pair<Kernel::Weighted_point_3, Vertex>;
+using Site = Kernel::Weighted_point_3;
 
 /// Radius of the spheres that stand for walls, in box lengths: curvature displaces a wall by
 /// 1 / (8 R), rounding by some 1e-16 R; near 2^25 both are a few 1e-9 of the box.
@@ -43,26 +44,39 @@ Site wall_site(const Spheres& spheres, int face) {
   Eigen::Vector3d centre = 0.5 * spheres.edges;
   const int axis = face / 2;
   centre[axis] = face % 2 ? spheres.edges[axis] + radius : -radius;
-  return {Kernel::Weighted_point_3(Kernel::Point_3(centre[0], centre[1], centre[2]),
-                                   radius * radius),
-          wall_vertex(face)};
+  return Site(Kernel::Point_3(centre[0], centre[1], centre[2]), radius * radius);
 }
 
 Site sphere_site(const Spheres& spheres, int k) {
   const auto centre = spheres.centres.col(k);
-  return {Kernel::Weighted_point_3(Kernel::Point_3(centre[0], centre[1], centre[2]),
-                                   spheres.radii[k] * spheres.radii[k]),
-          k};
+  return Site(Kernel::Point_3(centre[0], centre[1], centre[2]),
+              spheres.radii[k] * spheres.radii[k]);
 }
 
-Regular build(const Spheres& spheres) {
-  std::vector<Site> sites;
-  sites.reserve(spheres.size() + 6);
-  for (int face = 0; face < 6; ++face)
-    if (!spheres.periodic[face / 2]) sites.push_back(wall_site(spheres, face));
-  for (int k = 0; k < spheres.size(); ++k) sites.push_back(sphere_site(spheres, k));
+/// Of the spheres along the curve one in 8^n is inserted first, then of the others one in 8^(n-1), and so
+/// on: each begins its search next to the one before, in a triangulation that is never far from even.
+constexpr int refinement = 8, coarsest = 64;
+
+/// `info` of a vertex is its sphere's place in `order`, or a wall.
+Regular build(const Spheres& spheres, const std::vector<Vertex>& order) {
   Regular regular;
-  regular.insert(sites.begin(), sites.end());
+  for (int face = 0; face < 6; ++face)
+    if (!spheres.periodic[face / 2])
+      regular.insert(wall_site(spheres, face))->info() = wall_vertex(face);
+  const int count = spheres.size();
+  Regular::Cell_handle near{};
+  const auto insert = [&](int place) {
+    const auto vertex = regular.insert(sphere_site(spheres, order[place]), near);
+    if (vertex == Regular::Vertex_handle()) return;  // hidden
+    vertex->info() = place;
+    near = vertex->cell();
+  };
+  int stride = 1;
+  while (count / stride > coarsest) stride *= refinement;
+  for (int place = 0; place < count; place += stride) insert(place);
+  for (; stride > 1; stride /= refinement)
+    for (int place = 0; place < count; place += stride / refinement)
+      if (place % stride != 0) insert(place);
   return regular;
 }
 
@@ -85,30 +99,15 @@ bool in_box(const std::array<Vertex, 4>& vertices) {
   return walls < 4 && repeated == 0;
 }
 
-/// Spheres first; an even permutation, so the orientation stays positive.
-void put_spheres_first(std::array<Vertex, 4>& vertices, std::array<int, 4>& neighbours) {
-  bool odd = false;
-  const auto exchange = [&](int i, int j) {
-    std::swap(vertices[i], vertices[j]);
-    std::swap(neighbours[i], neighbours[j]);
-    odd = !odd;
-  };
-  int spheres = 0;
-  for (int i = 0; i < 4; ++i) {
-    if (is_wall(vertices[i])) continue;
-    if (i != spheres) exchange(i, spheres);
-    ++spheres;
-  }
-  if (odd) spheres >= 2 ? exchange(0, 1) : exchange(2, 3);
-}
-
-std::vector<int> hidden_spheres(const Regular& regular, int spheres) {
-  std::vector<char> seen(spheres, 0);
+std::vector<int> hidden_spheres(const Regular& regular, const std::vector<Vertex>& order,
+                                const Spheres& spheres) {
+  std::vector<char> seen(spheres.size(), 0);
   for (auto v = regular.finite_vertices_begin(); v != regular.finite_vertices_end(); ++v)
-    if (!is_wall(v->info())) seen[v->info()] = 1;
+    if (!is_wall(v->info())) seen[order[v->info()]] = 1;
   std::vector<int> hidden;
-  for (int k = 0; k < spheres; ++k)
+  for (int k = 0; k < spheres.size(); ++k)
     if (!seen[k]) hidden.push_back(k);
+  sort_by_ids(hidden, spheres);
   return hidden;
 }
 
@@ -120,7 +119,9 @@ void refuse_equal_centres(const Spheres& spheres) {
     return std::array<double, 3>{spheres.centres(0, k), spheres.centres(1, k),
                                  spheres.centres(2, k)};
   };
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::make_pair(key(a), spheres.ids[a]) < std::make_pair(key(b), spheres.ids[b]);
+  });
   for (std::size_t i = 1; i < order.size(); ++i)
     if (key(order[i - 1]) == key(order[i]))
       throw InputError("spheres " + std::to_string(spheres.ids[order[i - 1]]) + " and " +
@@ -129,32 +130,50 @@ void refuse_equal_centres(const Spheres& spheres) {
                        {{spheres.ids[order[i - 1]], spheres.ids[order[i]]}, {}});
 }
 
+/// The cells of the box in order; the `info` of each is its number, of the others -1.
+std::vector<Regular::Cell_handle> number_cells(const Regular& regular, int spheres) {
+  std::vector<Regular::Cell_handle> found, cells;
+  std::vector<std::array<Vertex, 4>> vertices;
+  found.reserve(regular.number_of_finite_cells());
+  vertices.reserve(regular.number_of_finite_cells());
+  for (auto cell = regular.all_cells_begin(); cell != regular.all_cells_end(); ++cell) {
+    cell->info() = -1;
+    if (regular.is_infinite(cell)) continue;
+    const auto own = vertices_of(cell);
+    if (!in_box(own)) continue;
+    found.push_back(cell);
+    vertices.push_back(own);
+  }
+  cells.reserve(found.size());
+  for (const int c : order_of_cells(vertices, spheres)) {
+    found[c]->info() = static_cast<int>(cells.size());
+    cells.push_back(found[c]);
+  }
+  return cells;
+}
+
 }  // namespace
 
 Triangulation triangulate(const Spheres& spheres) {
-  const Regular regular = build(spheres);
+  const std::vector<Vertex> order = along_curve(spheres);
+  const Regular regular = build(spheres, order);
   Triangulation result;
   const auto periodic = std::count(spheres.periodic.begin(), spheres.periodic.end(), true);
   const auto walls = static_cast<std::size_t>(6 - 2 * periodic);
   if (regular.number_of_vertices() < static_cast<std::size_t>(spheres.size()) + walls) {
     refuse_equal_centres(spheres);
-    result.hidden = hidden_spheres(regular, spheres.size());
+    result.hidden = hidden_spheres(regular, order, spheres);
   }
-  for (auto cell = regular.all_cells_begin(); cell != regular.all_cells_end(); ++cell)
-    cell->info() = -1;
-  std::vector<Regular::Cell_handle> cells;
-  cells.reserve(regular.number_of_finite_cells());
-  for (auto cell = regular.finite_cells_begin(); cell != regular.finite_cells_end(); ++cell) {
-    if (!in_box(vertices_of(cell))) continue;
-    cell->info() = static_cast<int>(cells.size());
-    cells.push_back(cell);
-  }
+  const auto cells = number_cells(regular, spheres.size());
   result.vertices.resize(cells.size());
   result.neighbours.resize(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    result.vertices[c] = vertices_of(cells[c]);
+    auto& vertices = result.vertices[c];
+    vertices = vertices_of(cells[c]);
+    for (Vertex& vertex : vertices)
+      if (!is_wall(vertex)) vertex = order[vertex];
     for (int i = 0; i < 4; ++i) result.neighbours[c][i] = cells[c]->neighbor(i)->info();
-    put_spheres_first(result.vertices[c], result.neighbours[c]);
+    arrange(vertices, result.neighbours[c], spheres);
   }
   return result;
 }
