@@ -121,8 +121,8 @@ void add_matrices(Record& record, const pfv::PoreNetwork& network, const pfv::Th
   const auto law = pfv::ConductanceLaw::open_throat;
   record.add("conductances", pfv::conductances(law, 1.0, network, throats, vertices).value);
   const pfv::ForceMatrix s =
-      pfv::force_matrix(network, throats, pfv::viscous_shares(law, network, throats, vertices),
-                        spheres.size(), {});
+      pfv::force_matrix(network, vertices, throats,
+                        pfv::viscous_shares(law, network, throats, vertices), spheres.size(), {});
   for (const int k : columns_by_id(spheres.ids))
     for (int e = s.row_begin[k]; e < s.row_begin[k + 1]; ++e) {
       record.add("S", s.pore[e]);

@@ -69,7 +69,7 @@ void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen
   if (built.geometric_rates)
     volume_rates(*built.geometric_rates, motion, team, rates);
   else
-    reciprocal_rates(*built.force_matrix, built.entries_by_pore, built.bases, motion, team, rates);
+    reciprocal_rates(*built.force_matrix, *built.sum_order, built.bases, motion, team, rates);
 }
 
 double gross_rate(const BuiltNetwork& built, const Motion& motion) {

@@ -52,7 +52,7 @@ struct BuiltNetwork {
   std::optional<bool> loses_digits;  ///< whether its solves need refinement; unknown before the first
 
   std::optional<VolumeRateMatrix> geometric_rates;  ///< E; only where it is wanted
-  EntriesByPore entries_by_pore;  ///< of the force matrix, where several threads share it
+  std::optional<SumOrder> sum_order;  ///< of S^T v
   ViscousShares viscous_shares;  ///< made with the force matrix
   std::optional<ForceMatrix> force_matrix;
   std::optional<ForceMatrix> pressure_force_matrix;

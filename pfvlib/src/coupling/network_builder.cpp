@@ -92,8 +92,9 @@ void make_volume_rates(BuiltNetwork& built, const Options& options, Team& team, 
     return;
   }
   make_force_matrix(built, options, team, counts);
-  if (team.threads() > 1 && built.entries_by_pore.begin.empty())
-    built.entries_by_pore = entries_by_pore(*built.force_matrix, built.network.pores());
+  if (!built.sum_order || (team.threads() > 1 && built.sum_order->begin.empty()))
+    built.sum_order = sum_order(*built.force_matrix, built.grains.spheres.ids,
+                                built.network.pores(), team);
 }
 
 void make_force_matrices(BuiltNetwork& built, const Options& options, Team& team,

@@ -5,6 +5,7 @@
 #include "physics/cell_volumes.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace pfv {
@@ -101,30 +102,26 @@ Bases measure_bases(const PoreNetwork& network, const PoreBoundaries& boundaries
   return bases;
 }
 
-EntriesByPore entries_by_pore(const ForceMatrix& forces, int pores) {
-  EntriesByPore order;
-  order.begin.assign(pores + 1, 0);
-  for (const int pore : forces.pore) ++order.begin[pore + 1];
-  for (int pore = 0; pore < pores; ++pore) order.begin[pore + 1] += order.begin[pore];
-  std::vector<int> next(order.begin.begin(), order.begin.end() - 1);
-  order.entry.resize(forces.pore.size());
-  for (std::size_t e = 0; e < forces.pore.size(); ++e)
-    order.entry[next[forces.pore[e]]++] = static_cast<int>(e);
-  return order;
-}
-
 namespace {
 
-/// A pore's parts are added in the order of the rows, as in `share`.
-void scatter(const ForceMatrix& forces, const Motion& motion, Eigen::VectorXd& rates) {
-  for (int row = 0; row < forces.rows(); ++row) {
+template <class Visit>
+void for_each_row(const ForceMatrix& forces, const SumOrder& order, Visit&& visit) {
+  if (order.rows.empty())
+    for (int row = 0; row < forces.rows(); ++row) visit(row);
+  else
+    for (const int row : order.rows) visit(row);
+}
+
+void scatter(const ForceMatrix& forces, const SumOrder& order, const Motion& motion,
+             Eigen::VectorXd& rates) {
+  for_each_row(forces, order, [&](int row) {
     const Vector6d own = motion.col(row);
     for (int e = forces.row_begin[row]; e < forces.row_begin[row + 1]; ++e)
       rates[forces.pore[e]] += forces.value.col(e).dot(own);
-  }
+  });
 }
 
-void share(const ForceMatrix& forces, const EntriesByPore& entries, const Motion& motion, Team& team,
+void share(const ForceMatrix& forces, const SumOrder& order, const Motion& motion, Team& team,
            Eigen::VectorXd& rates) {
   std::vector<double> products(forces.pore.size());
   team.run_rows(forces.row_begin.data(), forces.rows(), [&](int first, int last) {
@@ -134,22 +131,44 @@ void share(const ForceMatrix& forces, const EntriesByPore& entries, const Motion
         products[e] = forces.value.col(e).dot(own);
     }
   });
-  team.run_rows(entries.begin.data(), static_cast<int>(rates.size()), [&](int first, int last) {
+  team.run_rows(order.begin.data(), static_cast<int>(rates.size()), [&](int first, int last) {
     for (int pore = first; pore < last; ++pore)
-      for (int e = entries.begin[pore]; e < entries.begin[pore + 1]; ++e)
-        rates[pore] += products[entries.entry[e]];
+      for (int e = order.begin[pore]; e < order.begin[pore + 1]; ++e)
+        rates[pore] += products[order.entry[e]];
   });
 }
 
 }  // namespace
 
-void reciprocal_rates(const ForceMatrix& forces, const EntriesByPore& entries, const Bases& bases,
+SumOrder sum_order(const ForceMatrix& forces, const Packing::Ids& ids, int pores, const Team& team) {
+  SumOrder order;
+  const int spheres = forces.rows() - 6;
+  if (!std::is_sorted(ids.data(), ids.data() + spheres)) {
+    order.rows.resize(forces.rows());
+    std::iota(order.rows.begin(), order.rows.end(), 0);
+    std::sort(order.rows.begin(), order.rows.end() - 6,
+              [&](int a, int b) { return ids[a] < ids[b]; });
+  }
+  if (team.threads() == 1) return order;
+  order.begin.assign(pores + 1, 0);
+  for (const int pore : forces.pore) ++order.begin[pore + 1];
+  for (int pore = 0; pore < pores; ++pore) order.begin[pore + 1] += order.begin[pore];
+  std::vector<int> next(order.begin.begin(), order.begin.end() - 1);
+  order.entry.resize(forces.pore.size());
+  for_each_row(forces, order, [&](int row) {
+    for (int e = forces.row_begin[row]; e < forces.row_begin[row + 1]; ++e)
+      order.entry[next[forces.pore[e]]++] = e;
+  });
+  return order;
+}
+
+void reciprocal_rates(const ForceMatrix& forces, const SumOrder& order, const Bases& bases,
                       const Motion& motion, Team& team, Eigen::VectorXd& rates) {
   rates.setZero();
   if (team.threads() == 1)
-    scatter(forces, motion, rates);
+    scatter(forces, order, motion, rates);
   else
-    share(forces, entries, motion, team, rates);
+    share(forces, order, motion, team, rates);
   const Eigen::Index spheres = spheres_in(motion);
   for (int b = 0; b < bases.size(); ++b)
     if (bases.face[b] >= 0) rates[bases.pore[b]] += bases.load(b).dot(motion.col(spheres + bases.face[b]));

@@ -34,15 +34,17 @@ struct Bases {
 Bases measure_bases(const PoreNetwork& network, const PoreBoundaries& boundaries,
                     const Spheres& spheres);
 
-/// The entries of S by pores: what a team needs to share S^T v.
-struct EntriesByPore {
-  std::vector<int> begin, entry;
+/// In which order a pore's parts of S^T v are added: by the ids of the spheres, so that no byte depends on
+/// the order of the packing.
+struct SumOrder {
+  std::vector<int> rows;  ///< of S by id; empty where they stand so already
+  std::vector<int> begin, entry;  ///< the entries of S by pores in that order: what a team needs
 };
-EntriesByPore entries_by_pore(const ForceMatrix& forces, int pores);
+SumOrder sum_order(const ForceMatrix& forces, const Packing::Ids& ids, int pores, const Team& team);
 
-/// S^T v and what the bases sweep, m³/s, one entry a pore. `entries` may be empty for a team of one; no byte
-/// depends on the team. Cost: a pass over S.
-void reciprocal_rates(const ForceMatrix& forces, const EntriesByPore& entries, const Bases& bases,
+/// S^T v and what the bases sweep, m³/s, one entry a pore. `order` must have been made for the team; no byte
+/// depends on it. Cost: a pass over S.
+void reciprocal_rates(const ForceMatrix& forces, const SumOrder& order, const Bases& bases,
                       const Motion& motion, Team& team, Eigen::VectorXd& rates);
 /// What that is summed from, m³/s: sums of the rates are exact to its round-off.
 double gross_rate(const ForceMatrix& forces, const Bases& bases, const Motion& motion);
