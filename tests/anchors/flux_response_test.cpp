@@ -13,6 +13,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
+#include <tuple>
 #include <vector>
 
 namespace {
@@ -125,6 +126,38 @@ int fed(pfv::VolumeRates rates) {
 TEST(OwnDrag, OfNoSphereIsNegativeAndWithThePapersVolumeRatesOfSome) {
   EXPECT_EQ(fed(pfv::VolumeRates::reciprocal), 0);
   EXPECT_EQ(fed(pfv::VolumeRates::geometric), 12);
+}
+
+/// Mean over the axes of the torque on each sphere that turns alone with 1 rad/s, over that in fluid without
+/// end, 8 pi mu r^3.
+Eigen::ArrayXd braking_of_spins(const std::string& bed) {
+  constexpr double pi = 3.14159265358979323846;
+  pfv::PackingArrays packing = data_packing(bed);
+  packing.velocities = packing.angular_velocities = Eigen::Matrix3Xd::Zero(3, packing.radii.size());
+  pfv::Flow flow(pressure_box(pfv::Face::zlo, 0.0, pfv::Face::zhi, 0.0, pfv::Wall::symmetry),
+                 viscosity_one());
+  Eigen::ArrayXd result = Eigen::ArrayXd::Zero(packing.radii.size());
+  for (Eigen::Index entry = 0; entry < packing.angular_velocities.size(); ++entry) {
+    packing.angular_velocities(entry) = 1.0;
+    result[entry / 3] -= flow.evaluate(packing.view()).torque(entry) / 3.0;
+    packing.angular_velocities(entry) = 0.0;
+  }
+  result /= 8.0 * pi * packing.radii.array().cube();
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+// Spheres at rest around can only raise it: the pores know what its moments press through their throats, not
+// how its surface rubs on the fluid beside it.
+TEST(OwnDrag, OfASphereThatTurnsIsAPartOfThatOfStokes) {
+  for (const auto& [bed, median, largest] :
+       {std::tuple("packing_36_loose.csv", 0.091, 0.263), std::tuple("packing_100.csv", 0.144, 0.354),
+        std::tuple("bed_two_sizes.csv", 0.227, 0.943), std::tuple("bed_24_small.csv", 0.154, 0.844)}) {
+    const Eigen::ArrayXd braking = braking_of_spins(bed);
+    EXPECT_GT(braking[0], 0.0);
+    EXPECT_NEAR(braking[braking.size() / 2], median, 1e-3) << bed;
+    EXPECT_NEAR(braking[braking.size() - 1], largest, 1e-3) << bed;
+  }
 }
 
 }  // namespace
