@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every figure and table of doc/accuracy.md, from its text in doc/accuracy.in.md:  doc/accuracy.py [BUILD]
 
-Solves all packings with a reference by every law (some 200 runs of `pfv solve`, some 15 seconds) and writes
-doc/accuracy.md and doc/figures/accuracy_*.png.
+Solves all packings with a reference by every law (some 200 runs of `pfv solve`, some 15 seconds), then with
+each sphere of some of them moving alone (some 2800 runs, a minute or two), and writes doc/accuracy.md and
+doc/figures/accuracy_*.png.
 """
+import concurrent.futures
 import csv
 import dataclasses
 import json
@@ -231,6 +233,85 @@ def largest_excess(solved):
             f"{worst.wall.replace('_', '-') or 'periodic'})")
 
 
+RESPONDING = ("36 spheres, loose", "36 spheres, near touching", "25 spheres",
+              "6 and 70 spheres, size ratio 4", "24 spheres and 16 in their pores, sizes 3 to 8",
+              "nine spheres, d/D 0.2", "nine spheres, d/D 0.72")
+
+
+def response(case, sphere, axis, options, folder):
+    """Flux into the box through zlo when one sphere moves alone with 1 m/s, all pressures 0; m3/s."""
+    name = "_".join((str(sphere), "xyz"[axis], *options)).replace("-", "")
+    packing, report = folder / f"{name}.csv", folder / f"{name}.json"
+    velocity = [",0,0,0"] * len(case.spheres)
+    velocity[sphere - 1] = "," + ",".join("01"[k == axis] for k in range(3))
+    packing.write_text("id,x,y,z,radius,vx,vy,vz\n" + "".join(
+        f"{i},{x!r},{y!r},{z!r},{r!r}{v}\n"
+        for i, ((x, y, z, r), v) in enumerate(zip(case.spheres, velocity), 1)))
+    subprocess.run([BUILD / "bin/pfv", "solve", "--packing", packing, "--box", "0", "1", "0", "1", "0", "1",
+                    "--face", "zlo:pressure=0", "--face", "zhi:pressure=0", "--wall", case.wall,
+                    "--viscosity", "1", "--report", report, *options], check=True, capture_output=True)
+    flux = json.loads(report.read_text())["faces"]["zlo"]["flux"]
+    packing.unlink()
+    report.unlink()
+    return flux
+
+
+def responses(case, options, folder):
+    """By sphere; in the nine-sphere cell, whose reference has the forces along z alone, along z."""
+    axes = (2,) if case.group == "nine spheres" else (0, 1, 2)
+    spheres = (1, 9) if case.group == "nine spheres" else case.forces
+    found = {k: [0.0, 0.0, 0.0] for k in spheres}
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        for (k, axis), flux in zip([(k, axis) for k in spheres for axis in axes],
+                                   pool.map(lambda one: response(case, *one, options, folder),
+                                            [(k, axis) for k in spheres for axis in axes])):
+            found[k][axis] = flux
+    return found
+
+
+def error_words(found, exact):
+    """Median, worst and root of the mean square of the errors of vectors, the last over that of the exact ones."""
+    differences = {k: math.dist(vector, exact[k]) for k, vector in found.items()}
+    relative = [difference / math.hypot(*exact[k]) for k, difference in differences.items()]
+    rms = math.sqrt(sum(d * d for d in differences.values())
+                    / sum(math.hypot(*exact[k]) ** 2 for k in found))
+    return f"{100 * statistics.median(relative):.1f} / {100 * max(relative):.0f} / {100 * rms:.1f}"
+
+
+def bed_row(case, forces, geometric):
+    sums = (sum(found[k][2] for k in case.forces) for found in (forces, geometric, case.forces))
+    return [error_words({k: forces[k] for k in case.forces}, case.forces),
+            error_words(geometric, case.forces), *(f"{one:.3f}" for one in sums)]
+
+
+def nine_row(case, forces, geometric):
+    return [f"{100 * (found[k][2] / case.forces[k][2] - 1):+.0f}"
+            for k in geometric for found in (forces, geometric)]
+
+
+def response_tables(solved, folder):
+    """Forces at rest and fluxes of single moving spheres against the exact forces. The flux by S^T is the force:
+    the largest difference, over the largest force, is returned, too (open-throat law)."""
+    beds, nine, difference = [], [], 0.0
+    for c in (c for c in solved if c.name in RESPONDING):
+        axes = (2,) if c.group == "nine spheres" else (0, 1, 2)
+        for law in ("open_throat", "hydraulic_radius"):
+            forces = c.found[law][1]
+            options = ("--conductance", law, "--volume-rates")
+            if law == "open_throat":
+                largest = max(math.hypot(*f) for f in forces.values())
+                fluxes = responses(c, (*options, "reciprocal"), folder)
+                difference = max(difference, *(abs(flux[a] - forces[k][a]) / largest
+                                               for k, flux in fluxes.items() for a in axes))
+            geometric = responses(c, (*options, "geometric"), folder)
+            rows, row = (nine, nine_row) if c.group == "nine spheres" else (beds, bed_row)
+            rows.append([c.name.removeprefix("nine spheres, d/D "), c.wall.replace("_", "-"), named(law),
+                         *row(c, forces, geometric)])
+    return (table(["packing", "side walls", "law", "S, S^T", "papers' E", "sum: S^T", "E", "exact"], beds),
+            table(["d/D", "side walls", "law", "big: S^T", "E", "small: S^T", "E"], nine),
+            f"{difference:.0e}")
+
+
 def table_2(folder):
     """The paper's table 2: d/D = 0.72, no-slip walls."""
     exact = next(r for r in rows_of("stokes_nine_spheres.csv")
@@ -371,6 +452,7 @@ def main():
                  "table_2": table_2(folder), "dense": dense_table(folder),
                  "forces": force_table(solved), "nine_forces": nine_force_table(solved),
                  "estimate": estimate_table(solved)}
+        parts["responses"], parts["nine_responses"], parts["difference"] = response_tables(solved, folder)
     for group in dict.fromkeys(c.group for c in solved):
         parts[group.replace(" ", "_")] = permeability_table(group, solved)
     plot_permeability(solved, figures / "accuracy_permeability.png")
