@@ -104,15 +104,24 @@ Eigen::Vector3d moment_of_fluid(const Makings& m, int t) {
 }
 
 /// What each corner of each facet takes of a unit pressure difference across its throat.
+///
+/// A sphere's share of the viscous force acts towards the centroid of the fluid area, but no farther from its
+/// own centre than its surface: at the centroid, small spheres beside a wide throat would be spun by levers
+/// many times their radius. The couple that is left, so that all moments together are those of a pressure on
+/// the fluid area, goes to the spheres of the throat by share and radius, those that it turns least.
 class Corners {
  public:
   Corners(const Makings& makings, Team& team) : m_(makings) {
     if (!m_.parts.moments) return;
     fluid_.resize(3, m_.network.throats());
+    couple_.setZero(3, m_.parts.viscous ? m_.network.throats() : 0);
     constexpr int piece = 512;
     team.run((m_.network.throats() + piece - 1) / piece, [&](int number) {
       const int last = std::min((number + 1) * piece, m_.network.throats());
-      for (int t = number * piece; t < last; ++t) fluid_.col(t) = moment_of_fluid(m_, t);
+      for (int t = number * piece; t < last; ++t) {
+        fluid_.col(t) = moment_of_fluid(m_, t);
+        if (m_.parts.viscous) couple_.col(t) = couple(t);
+      }
     });
   }
 
@@ -126,21 +135,60 @@ class Corners {
   }
 
  private:
+  Vertex vertex(int f, int k) const { return m_.network.facet_vertices[f][k]; }
+
+  /// Of a share that acts at the centroid of the fluid area, about the sphere's centre.
+  Eigen::Vector3d at_centroid(int t, int f, int k) const {
+    return m_.shares[f][k] * (fluid_.col(t) - m_.throats.fluid_area[t] *
+                                                  m_.vertices.centres.col(vertex(f, k))
+                                                      .cross(m_.throats.normal.col(t)));
+  }
+
+  /// Part of the way to the centroid at which the sphere's surface lies, at most 1.
+  double reach(int t, int f, int k, const Eigen::Vector3d& moment) const {
+    const double lever = moment.norm();
+    const double most = std::abs(m_.shares[f][k]) * m_.throats.fluid_area[t] *
+                        m_.vertices.radii[vertex(f, k)];
+    return lever > most ? most / lever : 1.0;
+  }
+
+  double weight(int f, int k) const {
+    return is_wall(vertex(f, k))
+               ? 0.0
+               : std::max(m_.shares[f][k], 0.0) * m_.vertices.radii[vertex(f, k)];
+  }
+
+  /// What is left to the spheres of throat t, over the sum of their weights.
+  Eigen::Vector3d couple(int t) const {
+    Eigen::Vector3d left = Eigen::Vector3d::Zero();
+    double weights = 0.0;
+    for (int f = m_.network.throat_facets[t]; f < m_.network.throat_facets[t + 1]; ++f)
+      for (int k = 0; k < 3; ++k) {
+        if (is_wall(vertex(f, k))) continue;
+        const Eigen::Vector3d full = at_centroid(t, f, k);
+        left += (1.0 - reach(t, f, k, full)) * full;
+        weights += weight(f, k);
+      }
+    return weights > 0.0 ? Eigen::Vector3d(left / weights) : Eigen::Vector3d::Zero();
+  }
+
   Eigen::Vector3d moment(int t, int f, int k, const Eigen::Vector3d& normal) const {
-    const Vertex vertex = m_.network.facet_vertices[f][k];
-    const double share = m_.shares[f][k];
+    if (is_wall(vertex(f, k)))
+      return m_.parts.viscous ? Eigen::Vector3d(m_.shares[f][k] * fluid_.col(t))
+                              : Eigen::Vector3d::Zero();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    if (m_.parts.viscous) sum = share * fluid_.col(t);
-    if (is_wall(vertex)) return sum;
-    if (m_.parts.viscous)
-      sum -= share * m_.throats.fluid_area[t] * m_.vertices.centres.col(vertex).cross(normal);
+    if (m_.parts.viscous) {
+      const Eigen::Vector3d full = at_centroid(t, f, k);
+      sum = reach(t, f, k, full) * full + weight(f, k) * couple_.col(t);
+    }
     if (m_.parts.pressure && m_.throats.facet_disc[f][k] != 0.0)
       sum += moment_of_disc(m_, f, k).cross(normal);
     return sum;
   }
 
   const Makings& m_;
-  Eigen::Matrix3Xd fluid_;  ///< `moment_of_fluid` of each throat
+  Eigen::Matrix3Xd fluid_;   ///< `moment_of_fluid` of each throat
+  Eigen::Matrix3Xd couple_;  ///< `couple` of each throat
 };
 
 /// A vertex of a facet that takes a force, as one number.
