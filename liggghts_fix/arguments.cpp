@@ -249,6 +249,21 @@ void parse_retriangulation(Words& words, pfv::Options& options) {
   options.retriangulation_strain = words.number("the strain");
 }
 
+/// `N` or `auto [error PERCENT]`.
+void parse_couple_every(Words& words, PfvSettings& settings) {
+  settings.couple_error.reset();
+  settings.couple_every = 1;
+  settings.couple_every_given = true;
+  if (!words.take("auto")) {
+    settings.couple_every = words.count("auto or the number of steps");
+    return;
+  }
+  const double percent = words.take("error") ? words.number("the error in per cent")
+                                             : 100.0 * PfvSettings::default_couple_error;
+  if (!(percent > 0.0 && percent < 100.0)) words.fail("the error must be above 0 and below 100 per cent");
+  settings.couple_error = percent / 100.0;
+}
+
 void parse_keyword(Words& words, PfvSettings& settings) {
   const std::string keyword = words.keyword();
   if (keyword == "viscosity") settings.fluid.viscosity = words.number("the viscosity");
@@ -264,7 +279,7 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   else if (keyword == "retriangulate") parse_retriangulation(words, settings.options);
   else if (keyword == "rebuild_lag")
     settings.options.rebuild_lag = words.count("the number of flow steps", 0);
-  else if (keyword == "couple_every") settings.couple_every = words.count("the number of steps");
+  else if (keyword == "couple_every") parse_couple_every(words, settings);
   else if (keyword == "coupling") settings.coupling = words.coupling();
   else if (keyword == "time_step_check") settings.time_step_check = words.yes_or_no();
   else if (keyword == "shear_viscous") settings.options.shear_viscous = words.yes_or_no();
@@ -315,7 +330,16 @@ void check_geometric(PfvSettings& settings) {
                           "`volume_rates reciprocal`, the default");
 }
 
+/// Only explicit steps on a pore network can hold loads; the others integrate the drag over each step, look at
+/// the grid as often as they are told or count their steps until the next network.
+void settle_interval(PfvSettings& settings) {
+  const bool can_hold = settings.coupling == PfvCoupling::explicit_forces && !settings.grid &&
+                        settings.options.rebuild_lag == 0;
+  if (!can_hold) settings.couple_error.reset();
+}
+
 void check_all(PfvSettings& settings) {
+  settle_interval(settings);
   pfv::check(settings.fluid);
   pfv::check(settings.options);
   if (settings.options.volume_rates == pfv::VolumeRates::geometric) check_geometric(settings);

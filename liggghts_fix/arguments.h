@@ -85,7 +85,12 @@ struct PfvSettings {
   std::array<PfvFace, 6> faces;
   std::vector<PfvPatch> patches;
   std::vector<PfvRegion> regions;
-  int couple_every = 1;
+  int couple_every = 1;  ///< steps between two solves of the flow
+  /// In its place, by default: as the loads change, with this error, as a part of the load. Absent where each
+  /// step or each N-th is solved.
+  std::optional<double> couple_error = default_couple_error;
+  bool couple_every_given = false;
+  static constexpr double default_couple_error = 1e-3;
   PfvCoupling coupling = PfvCoupling::explicit_forces;
   bool time_step_check = true;
   double safety = 1.0;  ///< part of the explicit limit that a step may reach

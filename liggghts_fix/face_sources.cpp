@@ -205,6 +205,18 @@ std::array<pfv::Piston, 6> PfvFaceSources::pistons(bool forces) const {
   return pistons;
 }
 
+double PfvFaceSources::largest_load() const {
+  if (!any_mesh()) return 0.0;
+  std::array<double, 6> loads{};
+  for (int number = 0; number < 6; ++number)
+    if (MeshModuleStress* stress = stress_of(meshes_[number]))
+      loads[number] = stress->f_total(number / 2) - begun_[number];
+  MPI_Allreduce(MPI_IN_PLACE, loads.data(), 6, MPI_DOUBLE, MPI_SUM, world);
+  double largest = 0.0;
+  for (const double load : loads) largest = std::max(largest, std::abs(load));
+  return largest;
+}
+
 bool PfvFaceSources::any_mesh() const {
   return std::any_of(meshes_.begin(), meshes_.end(), [](const auto* mesh) { return mesh != nullptr; });
 }

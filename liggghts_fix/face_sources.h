@@ -44,6 +44,8 @@ class PfvFaceSources : protected Pointers {
   std::array<pfv::Piston, 6> pistons(bool forces) const;
 
   bool any_mesh() const;
+  /// The largest force that grains put on one of the meshes along its axis in this step, N; collective.
+  double largest_load() const;
   /// Adds a force (N) to what the meshes' stress modules record in this step, so that outputs and
   /// servos see it. Rank 0.
   void push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const;

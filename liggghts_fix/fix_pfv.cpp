@@ -34,11 +34,12 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
 
   scalar_flag = vector_flag = 1;
-  size_vector = 9;
+  size_vector = 10;
   extscalar = extvector = 0;
   global_freq = 1;
   peratom_flag = 1;
   size_peratom_cols = PfvGrainExchange::returned_width;
+  if (settings_.couple_error) interval_.emplace(*settings_.couple_error);
   peratom_freq = 1;
   restart_global = 1;
 }
@@ -49,7 +50,10 @@ void FixPfv::post_create() {
   const std::string property_id = std::string(id) + "_prop";
   std::vector<const char*> words{property_id.c_str(), group->names[igroup], "property/atom",
                                  property_id.c_str(), "vector", "no", "no", "no"};
-  words.insert(words.end(), PfvGrainExchange::returned_width, "0.");
+  words.insert(words.end(),
+               settings_.couple_error ? PfvGrainExchange::width_with_slopes
+                                      : PfvGrainExchange::returned_width,
+               "0.");
   per_atom_ = modify->add_fix_property_atom(static_cast<int>(words.size()),
                                             const_cast<char**>(words.data()), style);
   array_atom = per_atom_->array_atom;
@@ -201,7 +205,7 @@ pfv::Box FixPfv::current_box() {
     box.regions.push_back({region.lower, region.upper, boundary_of(region.boundary)});
   if (variables)
     modify->addstep_compute(update->ntimestep +
-                            std::max(1, settings_.couple_every - steps_since_flow_));
+                            (adapts() ? 1 : std::max(1, settings_.couple_every - steps_since_flow_)));
   return box;
 }
 
@@ -271,14 +275,19 @@ void FixPfv::setup(int) {
     evaluate_flow();
     if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
     check_time_step();
+    if (interval_) interval_->restart();
   });
+  plan_ = {};
+  begin_plan();
   after_flow_call();
   apply_forces();
 }
 
 void FixPfv::post_force(int) {
   elapsed_ += update->dt;
-  if (++steps_since_flow_ >= settings_.couple_every) advance();
+  ++steps_since_flow_;
+  ++steps_;
+  if (solve_due()) advance();
   apply_forces();
   push_meshes();
 }
@@ -286,12 +295,14 @@ void FixPfv::post_force(int) {
 void FixPfv::advance() {
   if (gravity() != settings_.fluid.gravity)
     stop(FLERR, "gravity has changed within a run; change it between runs");
+  const int steps = steps_since_flow_;
   steps_since_flow_ = 0;
+  ++solves_;
   read_host();
   box_ = current_box();
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
-  const bool mean = settings_.couple_every > 1;
+  const bool mean = settings_.couple_every > 1 || (adapts() && steps > 1);
   if (mean)
     for (int number = 0; number < 6; ++number)
       if (settings_.faces[number].source == PfvFace::Source::mesh)
@@ -303,9 +314,10 @@ void FixPfv::advance() {
     if (mean) grains_.use_mean_velocities(last_grains_, elapsed_);
     flow_->set_box(box_);
     step_flow();
-    if (mean) last_grains_ = grains_.snapshot();
+    if (mean || adapts()) last_grains_ = grains_.snapshot();
   });
   elapsed_ = 0.0;
+  if (adapts()) plan_next_solve(steps);
   after_flow_call();
 }
 
@@ -314,21 +326,31 @@ void FixPfv::after_flow_call() {
     report_.reset();
     files_->write(*flow_, grains_.packing(), update->ntimestep);
   });
-  grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{}, per_atom_->array_atom);
+  grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{},
+                  comm->me == 0 && interval_ ? &interval_->held() : nullptr,
+                  per_atom_->array_atom, settings_.couple_error.has_value());
 }
 
 void FixPfv::apply_forces() {
   array_atom = per_atom_->array_atom;  // reallocated when the number of atoms grows
+  const double trend = steps_of_trend();
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit)
       for (int k = 0; k < 3; ++k) {
         atom->f[i][k] += array_atom[i][k];
         atom->torque[i][k] += array_atom[i][4 + k];
+        if (trend == 0.0) continue;
+        atom->f[i][k] += trend * array_atom[i][PfvGrainExchange::returned_width + k];
+        atom->torque[i][k] += trend * array_atom[i][PfvGrainExchange::returned_width + 3 + k];
       }
 }
 
 void FixPfv::push_meshes() {
-  if (comm->me == 0 && faces_.any_mesh()) faces_.push_meshes(flow_->face_forces());
+  if (comm->me != 0 || !faces_.any_mesh()) return;
+  std::array<Eigen::Vector3d, 6> forces = flow_->face_forces();
+  if (const double trend = steps_of_trend(); trend != 0.0)
+    for (int f = 0; f < 6; ++f) forces[f] += trend * interval_->held().face_slope[f];
+  faces_.push_meshes(forces);
 }
 
 // ------------------------------------------------------------------------------- changes, restart
@@ -364,7 +386,7 @@ void FixPfv::write_restart(FILE* file) {
     } else if (restored_) {
       record.flow = *restored_;
     }
-    if (settings_.couple_every > 1) record.last_grains = last_grains_;
+    if (settings_.couple_every > 1 || settings_.couple_error) record.last_grains = last_grains_;
     record.written = files_->written();
     const std::vector<double> data = pack(record);
     const int bytes = static_cast<int>(data.size() * sizeof(double));

@@ -17,6 +17,7 @@ FixStyle(pfv,FixPfv)
 #include "result_files.h"
 
 #include "pfv/flow_model.hpp"
+#include "pfv/solve_interval.hpp"
 
 #include "fix.h"
 
@@ -79,6 +80,18 @@ class FixPfv : public Fix {
   void apply_forces();
   void push_meshes();
 
+  // when to solve the flow
+  bool adapts() const;
+  bool solve_due();
+  bool imposed_values_changed();
+  double gross_motion() const;
+  bool grains_jumped();
+  int most_steps();
+  double load_beside_fluid(double on_meshes) const;
+  void begin_plan();
+  void plan_next_solve(int steps);
+  double steps_of_trend() const;
+
   // time step and coupling
   void bind_coupling();
   bool needs_forces() const;
@@ -112,12 +125,24 @@ class FixPfv : public Fix {
   int steps_since_flow_ = 0;
   double elapsed_ = 0.0;
   std::array<double, 6> last_positions_{};
+  std::int64_t steps_ = 0, solves_ = 0;  // of all runs
+
+  // of `couple_every auto`
+  struct Plan {
+    int steps = 1;        // from the last solve to the next
+    double offset = 0.0;  // from the instant that its loads belong to until the last solve, steps
+    double share_of_fluid = 0.0;
+    double gross_motion = 0.0;  // at the last solve
+    double limit = -1.0;        // of the explicit coupling, s; negative: not known; rank 0
+    std::int64_t networks = 0;  // when it was asked for
+  } plan_;
 
   // rank 0 only
   std::unique_ptr<pfv::FlowModel> flow_;
   std::unique_ptr<PfvResultFiles> files_;
   std::optional<pfv::FlowState> restored_;
   std::optional<pfv::Report> report_;
+  std::optional<pfv::SolveInterval> interval_;
   PfvSnapshot last_grains_;
   PfvCoupling chosen_ = PfvCoupling::explicit_forces;
   double strain_of_a_step_ = 0.0;  // of the last one, 0 before the first of a run

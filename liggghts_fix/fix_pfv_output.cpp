@@ -31,6 +31,7 @@ double FixPfv::quantity(int n) {
     case 6: return flow_->mean_pressure();
     case 7: return static_cast<double>(flow_->hidden_or_outside());
     case 8: return static_cast<double>(flow_->stages());
+    case 9: return static_cast<double>(steps_since_flow_);
     default: return flow_->strain();
   }
 }
@@ -78,6 +79,13 @@ void FixPfv::print_phases() {
   std::snprintf(line, sizeof line, "residual %.3g  mass error %.3g  force balance error %.3g\n",
                 done.residual, done.mass_error, done.force_balance_error);
   text += line;
+  if (interval_) {
+    std::snprintf(line, sizeof line,
+                  "couple_every auto: solved at %lld of %lld steps, estimated error %.2g %% of the load\n",
+                  static_cast<long long>(solves_), static_cast<long long>(steps_),
+                  100.0 * interval_->largest_error());
+    text += line;
+  }
   if (settings_.options.rebuild_lag > 0) {
     std::snprintf(line, sizeof line, "built in the background %lld  waited for them %.4g s\n",
                   static_cast<long long>(done.counts.background), done.wall_seconds.waited);

@@ -114,28 +114,32 @@ PfvSnapshot PfvGrainExchange::snapshot() const {
   return {{ids.data(), ids.data() + ids.size()}, {places.data(), places.data() + places.size()}};
 }
 
-void PfvGrainExchange::scatter(const pfv::Forces& forces, double** per_atom) {
+void PfvGrainExchange::scatter(const pfv::Forces& forces, const pfv::HeldLoads* held,
+                               double** per_atom, bool with_slopes) {
+  const int width = with_slopes ? width_with_slopes : returned_width;
   std::vector<double> all;
   if (comm->me == 0) {
-    all.resize(returned_width * order_.size());
+    all.resize(width * order_.size());
+    const bool sloped = with_slopes && held && held->slope.cols() == forces.total.cols();
     for (std::size_t k = 0; k < order_.size(); ++k) {
-      double* row = &all[std::size_t(returned_width) * order_[k]];
+      double* row = &all[std::size_t(width) * order_[k]];
       Eigen::Map<Eigen::Vector3d>{row} = forces.total.col(k);
       row[3] = forces.sphere_pressure[k];
       if (forces.torque.cols() > 0) Eigen::Map<Eigen::Vector3d>{row + 4} = forces.torque.col(k);
+      if (sloped)
+        Eigen::Map<Eigen::Matrix<double, 6, 1>>{row + returned_width} = held->slope.col(k);
     }
   }
-  std::vector<double> mine(std::size_t(returned_width) * local_count_);
-  MPI_Scatterv(all.data(), times(counts_, returned_width).data(),
-               times(offsets_, returned_width).data(), MPI_DOUBLE, mine.data(),
-               returned_width * local_count_, MPI_DOUBLE, 0, world);
+  std::vector<double> mine(std::size_t(width) * local_count_);
+  MPI_Scatterv(all.data(), times(counts_, width).data(), times(offsets_, width).data(), MPI_DOUBLE,
+               mine.data(), width * local_count_, MPI_DOUBLE, 0, world);
   const double* row = mine.data();
   for (int i = 0; i < atom->nlocal; ++i) {
     if (atom->mask[i] & groupbit_) {
-      std::copy(row, row + returned_width, per_atom[i]);
-      row += returned_width;
+      std::copy(row, row + width, per_atom[i]);
+      row += width;
     } else {
-      std::fill(per_atom[i], per_atom[i] + returned_width, 0.0);
+      std::fill(per_atom[i], per_atom[i] + width, 0.0);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "pfv/flow_model.hpp"
 #include "pfv/packing.hpp"
+#include "pfv/solve_interval.hpp"
 
 #include "pointers.h"
 
@@ -48,8 +49,10 @@ class PfvGrainExchange : protected Pointers {
 
   /// Hands force (columns 0-2, N), pressure (3, Pa) and torque (4-6, N m) to the atoms as they were gathered
   /// and zeros to those outside the group; collective, with no change of atoms since `gather`.
-  void scatter(const pfv::Forces& forces, double** per_atom);
-  static constexpr int returned_width = 7;
+  /// With slopes: also how force (7-9, N a step) and torque (10-12) are expected to change; `held` may be null.
+  void scatter(const pfv::Forces& forces, const pfv::HeldLoads* held, double** per_atom,
+               bool with_slopes);
+  static constexpr int returned_width = 7, width_with_slopes = 13;
 
   double memory_usage() const;
 

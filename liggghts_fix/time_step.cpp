@@ -148,6 +148,13 @@ void FixPfv::check_time_step() {
                 id, limit, estimated_limit(), flow_step(), ratio, static_cast<int>(pistons),
                 name_of(chosen_), flow_->stages());
   print(text);
+  if (settings_.fluid.bulk_modulus && pistons > 0 && settings_.couple_every > 1) {
+    std::snprintf(text, sizeof text,
+                  "Fix pfv (id %s): a compressible fluid whose pressure is held over %d steps drives a piston "
+                  "(servo) on at any time step; use `couple_every 1` or `couple_every auto`",
+                  id, settings_.couple_every);
+    error->warning(FLERR, text);
+  }
   if (needs_forces() || ratio <= settings_.safety) return;
   std::snprintf(text, sizeof text,
                 "Fix pfv (id %s): the flow step of %.4g s is %.4g times the limit of the explicit "

@@ -65,7 +65,8 @@ def faces(**boundaries):
     return " ".join(words)
 
 
-FLOW = "viscosity 0.01 " + faces(zlo="pressure 10", zhi="pressure 0")
+WATER = "viscosity 0.01 " + faces(zlo="pressure 10", zhi="pressure 0")
+FLOW = WATER + " couple_every 1"
 DUMP = ("dump d all custom 1 {0} id x y z radius vx vy vz "
         "f_flow[1] f_flow[2] f_flow[3] f_flow[4] omegax omegay omegaz f_flow[5] f_flow[6] f_flow[7]\n"
         "dump_modify d sort id format \"%d" + " %.17g" * 17 + "\"\n")

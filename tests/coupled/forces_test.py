@@ -3,7 +3,7 @@
 import math
 import unittest
 
-from coupled import EDGE, FLOW, CoupledTest, dump, forces, largest_difference, packing
+from coupled import EDGE, FLOW, WATER, CoupledTest, dump, forces, largest_difference, packing
 from coupled import random_velocities, read_dump, read_thermo, write_data
 
 # dumps carry 17 digits, so both programs see the same numbers; LIGGGHTS parses and prints them once
@@ -63,7 +63,7 @@ class Forces(CoupledTest):
     def test_flow_is_advanced_once_every_n_steps_and_held_between(self):
         self.move_grains()
         self.liggghts("include in.packing\n"
-                      f"fix flow all pfv {FLOW} couple_every 5\n{dump('d.dump')}run 12\n")
+                      f"fix flow all pfv {WATER} couple_every 5\n{dump('d.dump')}run 12\n")
         steps = read_dump(self.folder / "d.dump")
         changes = [step for step in range(1, 13) if forces(steps[step]) != forces(steps[step - 1])]
         self.assertEqual(changes, [5, 10])
@@ -71,7 +71,7 @@ class Forces(CoupledTest):
     def test_flow_every_n_steps_takes_mean_velocities(self):
         self.move_grains()
         self.liggghts("include in.packing\n"
-                      f"fix flow all pfv {FLOW} couple_every 5 volume_rates geometric\n"
+                      f"fix flow all pfv {WATER} couple_every 5 volume_rates geometric\n"
                       f"{dump('d.dump')}run 10\n")
         steps = read_dump(self.folder / "d.dump")
         lines = ["id,x,y,z,radius,vx,vy,vz"]
@@ -94,11 +94,11 @@ class Forces(CoupledTest):
 
     def test_variables_may_ask_computes(self):
         """Energies are tallied only in steps that were announced: each flow step has to be."""
-        flow = FLOW.replace("pressure 10", "pressure v_p")
+        flow = WATER.replace("pressure 10", "pressure v_p")
         self.liggghts("include in.packing\ncompute e all pe\nvariable p equal 10+0*c_e\n"
                       f"fix flow all pfv {flow} couple_every 3\n" + dump("d.dump") + "run 7\n")
         variable = (self.folder / "d.dump").read_bytes()
-        self.liggghts(f"include in.packing\nfix flow all pfv {FLOW} couple_every 3\n" +
+        self.liggghts(f"include in.packing\nfix flow all pfv {WATER} couple_every 3\n" +
                       dump("d.dump") + "run 7\n")
         self.assertEqual((self.folder / "d.dump").read_bytes(), variable)
 

@@ -37,22 +37,17 @@ class Implicit(SettledTest):
     def test_settlement_and_pressure_are_those_of_the_explicit_run_at_its_own_limit(self):
         """Of first order in the time step: 0.8 % of the settlement and 1 % of the peak pressure were
         measured, half of it at half of the step; most of it are the dashpots, which act with v(n-1/2)."""
-        implicit = self.thermo(self.script(self.at_ratio(20, "coupling implicit"),
+        kept = "retriangulate 1000"  # or the pressures differ by the jumps of new networks
+        implicit = self.thermo(self.script(self.at_ratio(20, "coupling implicit " + kept),
                                            "thermo 1\nrun 120\n"))
-        fine = self.thermo(self.script(self.at_ratio(20, ""), "thermo 25\nrun 3000\n",
+        fine = self.thermo(self.script(self.at_ratio(20, kept), "thermo 25\nrun 3000\n",
                                        step=STEP / 25))
         settled = abs(fine[-1]["height"] - fine[0]["height"])
         peak = max(row["flow[7]"] for row in fine[20:])
-        compared = 0
         for at in range(20, 121):
             row, other = implicit[at], fine[at]
             self.assertLess(abs(row["height"] - other["height"]), 0.01 * settled)
-            # a new network's pressures jump for some steps, until the velocities follow it
-            if any(run[at]["flow[5]"] != run[at - 4]["flow[5]"] for run in (implicit, fine)):
-                continue
             self.assertLess(abs(row["flow[7]"] - other["flow[7]"]), 0.012 * peak)
-            compared += 1
-        self.assertGreater(compared, 30)
 
     # pistons
 

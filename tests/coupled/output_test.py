@@ -4,7 +4,7 @@ import re
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from coupled import EDGE, FLOW, CoupledTest, dump, packing, random_velocities, read_dump
+from coupled import EDGE, FLOW, WATER, CoupledTest, dump, packing, random_velocities, read_dump
 from coupled import read_thermo, restarted_head, write_data
 
 HEAD = "include in.packing\n"
@@ -74,7 +74,7 @@ class Output(CoupledTest):
 
     def test_files_with_a_flow_step_every_few_steps(self):
         """Written after the first flow step that reaches each multiple."""
-        self.liggghts(HEAD + f"fix flow all pfv {FLOW} couple_every 4 profile z 2 5 p.csv\n"
+        self.liggghts(HEAD + f"fix flow all pfv {WATER} couple_every 4 profile z 2 5 p.csv\n"
                       "run 16\n")
         _, rows = self.profile()
         self.assertEqual([round(row[0] / 1e-5) for row in rows], [0, 8, 12, 16])

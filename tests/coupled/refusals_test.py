@@ -2,7 +2,7 @@
 """What fix pfv cannot do it refuses, with one line that says what is wrong."""
 import unittest
 
-from coupled import EDGE, FLOW, CoupledTest, faces, packing, write_data
+from coupled import EDGE, FLOW, WATER, CoupledTest, faces, packing, write_data
 from plates import square, write_plate
 
 WALL = ("fix {0} all wall/gran model hooke/stiffness tangential history primitive type 1 {1}\n")
@@ -67,7 +67,7 @@ class Refusals(CoupledTest):
         self.refuse(FLOW + " rebuild_lag 5 coupling implicit", "rebuild_lag", "staged", after="")
         self.refuse(FLOW + " rebuild_lag 5 coupling auto", "rebuild_lag", "staged", after="")
         self.refuse(FLOW + " rebuild_lag 5 model darcy_grid 1 1 1", "no rebuild lag", after="")
-        self.refuse(FLOW + " couple_every 0", "couple_every", "'0'", after="")
+        self.refuse(WATER + " couple_every 0", "couple_every", "'0'", after="")
 
     def test_output_without_its_folder(self):
         self.refuse(FLOW + " output 10 nowhere/flow.pvd", "nowhere", after="")

@@ -2,7 +2,7 @@
 """A run that is continued from a restart file goes the way of the run that wrote it."""
 import unittest
 
-from coupled import FLOW, CoupledTest, dump, forces, largest_difference, packing
+from coupled import FLOW, WATER, CoupledTest, dump, forces, largest_difference, packing
 from coupled import random_velocities, read_dump, read_thermo, restarted_head, write_data
 
 THERMO = ("thermo_style custom step f_flow f_flow[5] f_flow[7]\n"
@@ -50,7 +50,7 @@ class Restart(CoupledTest):
         self.compare(f"compute e all pe\nvariable p equal 10+0*c_e\nfix flow all pfv {flow}\n")
 
     def test_between_two_flow_steps(self):
-        self.compare(f"fix flow all pfv {FLOW} couple_every 4\n")
+        self.compare(f"fix flow all pfv {WATER} couple_every 4\n")
 
     def test_counts_go_on(self):
         rows = self.compare(f"fix flow all pfv {FLOW} retriangulate 1e-6\n")

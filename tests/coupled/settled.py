@@ -11,7 +11,8 @@ WALLS = "".join(
     f"{face[0]}plane {EDGE if face.endswith('hi') else 0.0}\n" for face in FACES)
 GRAVITY = "fix g all gravity {0} vector 0 0 -1\n"
 # the tests' figures are those of the papers' law
-OPEN = faces(zlo="pressure 0", zhi="pressure 0") + " density 0 conductance hydraulic_radius"
+OPEN = (faces(zlo="pressure 0", zhi="pressure 0") +
+        " density 0 conductance hydraulic_radius")
 STEP = 1e-4  # s; contacts are stable to about 6e-4 s
 THERMO = ("compute height all reduce ave z\n"
           "thermo_style custom step ke c_height f_flow f_flow[5] f_flow[6] f_flow[7] f_flow[9]\n"
@@ -38,7 +39,8 @@ class SettledTest(CoupledTest):
         write_data(self.folder, SettledTest.rest)
 
     def fix(self, viscosity, words=""):
-        return f"fix flow all pfv viscosity {viscosity!r} {OPEN} {words}\n"
+        every = "" if "coupl" in words else " couple_every 1"
+        return f"fix flow all pfv viscosity {viscosity!r} {OPEN}{every} {words}\n"
 
     def at_ratio(self, ratio, words="coupling staged"):
         """The fix with the viscosity at which STEP is `ratio` times the explicit limit."""

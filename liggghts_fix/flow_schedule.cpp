@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `couple_every auto`: at which steps the flow is solved, and what acts between.
+#include "fix_pfv.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "update.h"
+
+#include <mpi.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace LAMMPS_NS {
+
+/// Whether the interval is the flow's own choice.
+bool FixPfv::adapts() const { return settings_.couple_error.has_value(); }
+
+bool FixPfv::solve_due() {
+  if (!adapts()) return steps_since_flow_ >= settings_.couple_every;
+  return steps_since_flow_ >= plan_.steps || imposed_values_changed() || grains_jumped();
+}
+
+/// Variables may change a boundary at any step; a change beyond the tolerance is solved for at once.
+bool FixPfv::imposed_values_changed() {
+  if (!has_variables()) return false;
+  const pfv::Box now = current_box();
+  double change = 0.0, largest = 0.0;
+  const auto compare = [&](const pfv::Boundary& a, const pfv::Boundary& b) {
+    change = std::max(change, std::abs(a.value - b.value));
+    largest = std::max({largest, std::abs(a.value), std::abs(b.value)});
+    if (a.profile && b.profile)  // a cosine: its two extremes tell mean and amplitude
+      for (const auto& place : {box_.lower, box_.upper})
+        change = std::max(change, std::abs(a.profile(place, 0.0) - b.profile(place, 0.0)));
+  };
+  for (int f = 0; f < 6; ++f) compare(now.faces[f].boundary, box_.faces[f].boundary);
+  for (std::size_t i = 0; i < now.patches.size(); ++i)
+    compare(now.patches[i].boundary, box_.patches[i].boundary);
+  for (std::size_t i = 0; i < now.regions.size(); ++i)
+    compare(now.regions[i].boundary, box_.regions[i].boundary);
+  return change > settings_.couple_error.value() * largest;
+}
+
+/// Sum of |v| r² of the flow's grains, m³/s; collective.
+double FixPfv::gross_motion() const {
+  double sum = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) {
+      const double* v = atom->v[i];
+      sum += std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * atom->radius[i] * atom->radius[i];
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
+  return sum;
+}
+
+/// Whether the grains move so much faster or slower than at the last solve that the interval, which was made
+/// from what had happened before, cannot have foreseen it.
+bool FixPfv::grains_jumped() {
+  constexpr double foreseen = 10.0;  // tolerances
+  if (steps_since_flow_ < 2) return false;
+  const double change = std::abs(gross_motion() - plan_.gross_motion);
+  return change * plan_.share_of_fluid > foreseen * settings_.couple_error.value() * plan_.gross_motion;
+}
+
+/// Steps over which loads can be held at most: well within the limit of the explicit coupling, and one with a
+/// compressible fluid, whose held pressure drives grains and pistons like a spring with negative damping.
+int FixPfv::most_steps() {
+  constexpr double part_of_limit = 0.4;
+  constexpr std::int64_t networks_for_a_limit = 20;
+  if (settings_.fluid.bulk_modulus) return 1;
+  if (plan_.limit < 0.0 || flow_->retriangulations() - plan_.networks >= networks_for_a_limit) {
+    plan_.limit = time_step_limit();
+    plan_.networks = flow_->retriangulations();
+  }
+  const double most = part_of_limit * plan_.limit / update->dt;
+  return static_cast<int>(std::clamp(most, 1.0, 1e6));
+}
+
+/// The largest load on a face beside the fluid's that is known: what grains press on meshes, or all of their
+/// weight, N. Rank 0; `on_meshes` from all ranks.
+double FixPfv::load_beside_fluid(double on_meshes) const {
+  const Eigen::Vector3d g = settings_.fluid.gravity;
+  double weight = 0.0;
+  const Eigen::VectorXd& masses = grains_.masses();
+  const auto radii = grains_.packing().radii;
+  for (Eigen::Index k = 0; k < masses.size(); ++k)
+    if (std::isfinite(masses[k]))
+      weight += g.norm() * std::max(0.0, masses[k] - 4.0 / 3.0 * M_PI * std::pow(radii[k], 3) *
+                                                       settings_.fluid.density);
+  return std::max(on_meshes, weight);
+}
+
+/// Decides on the next solve from the loads of this one, `steps` after the last; collective.
+void FixPfv::plan_next_solve(int steps) {
+  plan_.gross_motion = gross_motion();
+  const double on_meshes = faces_.largest_load();
+  double told[4] = {1.0, 0.0, 0.0, 0.0};
+  on_root([&] {
+    const auto radii = grains_.packing().radii;
+    if (radii.size() == 0) return;
+    const double section = M_PI * radii.squaredNorm() / static_cast<double>(radii.size());
+    double area = 0.0;
+    for (const pfv::Face face : pfv::all_faces) area = std::max(area, box_.area(face));
+    interval_->take(grains_.packing().ids, flow_->forces(), flow_->face_forces(), steps,
+                    load_beside_fluid(on_meshes), area, section, most_steps());
+    told[0] = interval_->steps();
+    told[1] = interval_->held().offset;
+    told[2] = interval_->share_of_fluid();
+  });
+  MPI_Bcast(told, 4, MPI_DOUBLE, 0, world);
+  plan_.steps = static_cast<int>(told[0]);
+  plan_.offset = told[1];
+  plan_.share_of_fluid = told[2];
+}
+
+/// At the setup of a run, with the loads of its evaluation; collective. What an earlier run saw is forgotten, as
+/// it would be in one that starts from a restart file.
+void FixPfv::begin_plan() {
+  if (adapts()) plan_next_solve(1);
+}
+
+/// Steps from the instant that the loads of the last solve belong to until now; 0 where they are held.
+double FixPfv::steps_of_trend() const {
+  return adapts() && plan_.steps > 1 ? plan_.offset + steps_since_flow_ : 0.0;
+}
+
+}  // namespace LAMMPS_NS

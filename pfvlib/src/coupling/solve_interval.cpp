@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pfv/solve_interval.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pfv {
+
+namespace {
+
+constexpr int longest = 1000;  // steps: something may begin to move meanwhile
+constexpr double aim = 0.7;    // of the tolerance
+constexpr double fastest_growth = 2.0, fastest_fall = 0.25;  // of the interval, at a solve
+
+Eigen::Matrix<double, 6, Eigen::Dynamic> loads_of(const Forces& forces) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> loads(6, forces.total.cols());
+  loads.topRows<3>() = forces.total;
+  if (forces.torque.cols() > 0)
+    loads.bottomRows<3>() = forces.torque;
+  else
+    loads.bottomRows<3>().setZero();
+  return loads;
+}
+
+template <class Columns>
+double root_mean_square(const Columns& columns) {
+  return columns.cols() > 0 ? std::sqrt(columns.squaredNorm() / static_cast<double>(columns.cols()))
+                            : 0.0;
+}
+
+double largest_norm(const std::array<Eigen::Vector3d, 6>& faces) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& force : faces) largest = std::max(largest, force.norm());
+  return largest;
+}
+
+double ratio(double part, double whole) { return part > 0.0 ? part / whole : 0.0; }
+
+}  // namespace
+
+void SolveInterval::restart() {
+  known_ = trend_known_ = continues_ = false;
+  steps_ = last_steps_ = 1;
+  error_ = 0.0;
+  held_ = {};
+}
+
+SolveInterval::Errors SolveInterval::errors_of(const Forces& forces,
+                                               const std::array<Eigen::Vector3d, 6>& faces,
+                                               double face_scale, double grain_scale,
+                                               double apart) const {
+  Eigen::Matrix3Xd change = forces.total - last_.topRows<3>();
+  std::array<Eigen::Vector3d, 6> face_change;
+  for (int f = 0; f < 6; ++f) face_change[f] = faces[f] - last_faces_[f];
+  const auto error = [&] {
+    return std::max(ratio(largest_norm(face_change), face_scale),
+                    ratio(root_mean_square(change), grain_scale));
+  };
+  Errors errors{error(), 0.0};
+  errors.continued = errors.held;
+  if (!trend_known_) return errors;
+  change -= apart * trend_.topRows<3>();
+  for (int f = 0; f < 6; ++f) face_change[f] -= apart * face_trend_[f];
+  errors.continued = error();
+  return errors;
+}
+
+void SolveInterval::choose(Errors errors, int most) {
+  continues_ = trend_known_ && errors.continued < errors.held && most > 2;
+  const double wanted = aim * tolerance_;
+  const double now = last_steps_;
+  // the middles of two intervals of n steps are n apart; what is held errs with that, a trend with its square
+  const auto stretched = [&](double error, double order) {
+    return error > 0.0 ? now * std::pow(wanted / error, 1.0 / order) : fastest_growth * now;
+  };
+  const double next = continues_ ? stretched(errors.continued, 2.0) : stretched(errors.held, 1.0);
+  const double bounded = std::clamp(next, fastest_fall * now, fastest_growth * now);
+  steps_ = static_cast<int>(std::clamp(std::floor(bounded + 1e-9), 1.0,
+                                       static_cast<double>(std::min(most, longest))));
+}
+
+void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
+                         const std::array<Eigen::Vector3d, 6>& faces, int steps, double face_load,
+                         double face_area, double section, int most) {
+  if (known_ && (ids.size() != ids_.size() || ids != ids_)) restart();
+  Eigen::Matrix<double, 6, Eigen::Dynamic> loads = loads_of(forces);
+  const double of_fluid = largest_norm(faces), of_grains = root_mean_square(forces.total);
+  const double face_scale = std::max(face_load, of_fluid);
+  const double grain_scale = std::max(of_grains, face_scale / face_area * section);
+  share_ = std::max(ratio(of_fluid, face_scale), ratio(of_grains, grain_scale));
+  if (known_) {
+    const double apart = 0.5 * (steps + last_steps_);  // of the middles of this interval and the last
+    const Errors errors = errors_of(forces, faces, face_scale, grain_scale, apart);
+    error_ = continues_ ? errors.continued : errors.held;
+    largest_error_ = std::max(largest_error_, error_);
+    trend_ = (loads - last_) / apart;
+    for (int f = 0; f < 6; ++f) face_trend_[f] = (faces[f] - last_faces_[f]) / apart;
+    last_steps_ = steps;
+    choose(errors, most);
+    trend_known_ = true;
+  }
+  held_.offset = 0.5 * steps;
+  const bool goes_on = continues_ && steps_ > 1;
+  held_.slope = goes_on ? trend_ : Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, loads.cols());
+  for (int f = 0; f < 6; ++f)
+    held_.face_slope[f] = goes_on ? face_trend_[f] : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  ids_ = ids;
+  last_ = std::move(loads);
+  last_faces_ = faces;
+  known_ = true;
+}
+
+}  // namespace pfv
