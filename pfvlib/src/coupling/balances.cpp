@@ -80,7 +80,7 @@ Totals boundary_totals(const FlowData& flow, const std::vector<double>& inflows)
 double traffic(const FlowData& flow) {
   const PoreNetwork& network = flow.built->network;
   double sum = flow.built->volume_rate_matrix
-                   ? gross_volume_rate(*flow.built->volume_rate_matrix, flow.rated_motion())
+                   ? gross_volume_rates(*flow.built->volume_rate_matrix, flow.rated_motion()).sum()
                    : 0.0;
   for (int t = 0; t < network.throats(); ++t)
     sum += flow.built->conductances.value[t] *

@@ -115,6 +115,7 @@ struct FlowData {
   void take_up(std::unique_ptr<BuiltNetwork> fresh);
   void refuse_undetermined(bool moving_now) const;
   void refuse_isolated(const std::vector<Isolated>& held) const;
+  double rounding_of_rates() const;
   void update_rates(const Packing& packing);
   void rates_of(const Eigen::Matrix3Xd& of_grains);
   void rates_of_motion(const Eigen::Matrix3Xd& motion);

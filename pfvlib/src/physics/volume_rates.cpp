@@ -83,12 +83,12 @@ Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix
   return rates;
 }
 
-double gross_volume_rate(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion) {
-  double sum = 0.0;
-  for_each_mover(matrix, motion, [&](int, const auto& area, const auto& velocity) {
-    sum += area.norm() * velocity.norm();
+Eigen::VectorXd gross_volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion) {
+  Eigen::VectorXd gross = Eigen::VectorXd::Zero(matrix.rows());
+  for_each_mover(matrix, motion, [&](int pore, const auto& area, const auto& velocity) {
+    gross[pore] += area.norm() * velocity.norm();
   });
-  return sum;
+  return gross;
 }
 
 Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& velocities,

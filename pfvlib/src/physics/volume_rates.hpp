@@ -32,8 +32,8 @@ Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix
                              const Box& box);
 /// The same for given velocities of the walls: 3 x (N + 6), the last six those of xlo ... zhi.
 Eigen::VectorXd volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion);
-/// What that is summed from, m³/s: the sum of |area||velocity|. The sums above are exact to its round-off.
-double gross_volume_rate(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion);
+/// What those are summed from, m³/s: sums of |area||velocity|. The rates are exact to their round-off.
+Eigen::VectorXd gross_volume_rates(const VolumeRateMatrix& matrix, const Eigen::Matrix3Xd& motion);
 /// Velocities (m/s) of the spheres followed by those of the six faces: 3 x (N + 6).
 Eigen::Matrix3Xd with_face_velocities(const Eigen::Matrix3Xd& velocities, const Box& box);
 
