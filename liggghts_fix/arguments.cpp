@@ -8,6 +8,7 @@
 #include <climits>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 namespace LAMMPS_NS {
 
@@ -107,6 +108,19 @@ class Words {
   std::string keyword_;
 };
 
+/// Refuses what is said a second time: of two values only one would be heard.
+class Once {
+ public:
+  explicit Once(const Words& words) : words_(words) {}
+  void claim(const std::string& word) {
+    if (!claimed_.insert(word).second) words_.fail(word + " is given twice; give it once");
+  }
+
+ private:
+  const Words& words_;
+  std::set<std::string> claimed_;
+};
+
 /// `sealed | pressure P | flux Q`, if that comes next.
 std::optional<PfvBoundary> take_boundary(Words& words) {
   if (words.take("sealed")) return PfvBoundary{};
@@ -185,7 +199,9 @@ void parse_region(Words& words, PfvSettings& settings, bool point) {
 }
 
 void parse_pressure_profile(Words& words, PfvSettings& settings) {
-  PfvFace& face = settings.faces[static_cast<int>(words.face())];
+  const pfv::Face name = words.face();
+  PfvFace& face = settings.faces[static_cast<int>(name)];
+  if (face.profile) words.fail(std::string("face ") + pfv::name_of(name) + " is given twice");
   if (!words.take("cosine")) words.fail("the one profile that exists is cosine");
   PfvCosine cosine;
   cosine.axis = words.axis();
@@ -234,10 +250,16 @@ void parse_model(Words& words, PfvSettings& settings) {
   if (!words.take("darcy_grid")) words.fail("the models are pfv and darcy_grid");
   pfv::DarcyOptions grid;
   for (int& cells : grid.cells) cells = words.count("the number of cells");
+  Once once(words);
+  const auto take = [&](const char* word) {
+    if (!words.take(word)) return false;
+    once.claim(word);
+    return true;
+  };
   while (true) {
-    if (words.take("every")) grid.refresh_every = words.count("the number of flow steps");
-    else if (words.take("drag")) grid.drag = pfv::drag_law_named(words.word("the drag law"));
-    else if (words.take("grain_motion")) grid.grain_motion = words.yes_or_no();
+    if (take("every")) grid.refresh_every = words.count("the number of flow steps");
+    else if (take("drag")) grid.drag = pfv::drag_law_named(words.word("the drag law"));
+    else if (take("grain_motion")) grid.grain_motion = words.yes_or_no();
     else break;
   }
   settings.grid = grid;
@@ -264,8 +286,16 @@ void parse_couple_every(Words& words, PfvSettings& settings) {
   settings.couple_error = percent / 100.0;
 }
 
-void parse_keyword(Words& words, PfvSettings& settings) {
+/// Keywords of a face or of an opening, which say themselves what they are about.
+bool comes_several_times(const std::string& keyword) {
+  static const std::set<std::string> several{"face", "patch", "region", "point",
+                                             "pressure_profile"};
+  return several.count(keyword) > 0;
+}
+
+void parse_keyword(Words& words, Once& once, PfvSettings& settings) {
   const std::string keyword = words.keyword();
+  if (!comes_several_times(keyword)) once.claim(keyword);
   if (keyword == "viscosity") settings.fluid.viscosity = words.number("the viscosity");
   else if (keyword == "density") settings.fluid.density = words.number("the density");
   else if (keyword == "bulk_modulus") settings.fluid.bulk_modulus = words.number("the modulus");
@@ -376,7 +406,9 @@ PfvSettings parse_pfv(int narg, char** arg) {
   settings.options.sphere_pressure = true;
   if (std::none_of(arg, arg + narg, [](const char* a) { return std::string(a) == "viscosity"; }))
     throw pfv::InputError("keyword 'viscosity' is missing; give `viscosity MU`, Pa s");
-  for (Words words(narg, arg); !words.done();) parse_keyword(words, settings);
+  Words words(narg, arg);
+  Once once(words);
+  while (!words.done()) parse_keyword(words, once, settings);
   require_all_faces(settings);
   apply_profiles(settings);
   check_all(settings);

@@ -47,6 +47,14 @@ class BadInput(CommandTest):
                            ("2,0.5,0.5,0.5,-0.1", "radius is '-0.1'")):
             self.refuse_packing(HEADER + good + line + "\n", "packing.csv:3", part)
 
+    def test_what_is_said_twice(self):
+        for twice, parts in ((["--viscosity", "1", "--viscosity", "2"], ["--viscosity"]),
+                             (["--solver", "cg", "--solver", "klu2"], ["--solver"]),
+                             (["--box", *UNIT_BOX[1:]], ["--box"]),
+                             (["--face", "zlo:pressure=1"], ["zlo", "repeats"])):
+            flow = ["--face", "zlo:pressure=0", "--face", "zhi:pressure=1"]
+            self.refuse_arguments(*flow, *twice, parts=parts)
+
     def test_a_dump_that_is_cut_off(self):
         dump = ("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n"
                 "0 1\nITEM: ATOMS id x y z radius \n1 0.3 0.3 0.3 0.1 \n")

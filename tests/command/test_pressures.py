@@ -18,6 +18,17 @@ class Pressures(CommandTest):
         self.assert_close(flux(report, "zhi"), -2.5e-3)
         self.assert_close(flux(report, "zlo"), 2.5e-3)
 
+    def test_grains_that_go_along_with_the_fluid_feel_no_pressure(self):
+        rows = [[*row, 0, 0, 0.01] for row in dense_rows()[1]]
+        lines = ["id,x,y,z,radius,vx,vy,vz"] + [",".join(map(str, row)) for row in rows]
+        plug = self.write("plug.csv", "\n".join(lines) + "\n")
+        report = self.report("--face", "zlo:flux=0.01", "--face", "zhi:pressure=0", "--viscosity",
+                             "1", "--forces", "forces.csv", packing=plug)
+        self.assert_close(flux(report, "zhi"), -0.01, 1e-12)
+        self.assertLess(abs(report["mass_error"]), 1e-13)
+        self.assertLess(max(abs(value) for row in self.forces("forces.csv").values()
+                            for value in row), 1e-12)  # 12 mu v L = 0.12 N of grains at rest
+
     def test_flux_goes_with_pressure_over_viscosity(self):
         faces = ["--face", "zlo:pressure=-1e3", "--face", "zhi:pressure=1e3"]
         once = self.report(*faces, "--viscosity", "2e-3")

@@ -44,6 +44,16 @@ class Refusals(CoupledTest):
     def test_face_given_twice(self):
         self.refuse(FLOW + " face zlo plane 0", "zlo", "twice", after="")
 
+    def test_keyword_given_twice(self):
+        for twice in ("viscosity 1", "density 900 density 1000", "coupling staged coupling staged",
+                      "threads 1 threads 2", "output 1 a.pvd output 2 b.pvd",
+                      "model pfv model darcy_grid 1 1 1"):
+            with self.subTest(twice):
+                self.refuse(FLOW + " " + twice, twice.split()[0], "twice", after="")
+        self.refuse(FLOW + " model darcy_grid 1 1 1 every 2 every 3", "every", "twice", after="")
+        profile = " pressure_profile zlo cosine x 0 1 0.1"
+        self.refuse(FLOW + 2 * profile, "pressure_profile", "zlo", "twice", after="")
+
     def test_unknown_face(self):
         self.refuse("viscosity 0.01 face top plane 0", "top", after="")
 

@@ -79,7 +79,7 @@ Totals boundary_totals(const FlowData& flow, const std::vector<double>& inflows)
 /// displace: fluxes below the machine precision of this are round-off, not flow.
 double traffic(const FlowData& flow) {
   const PoreNetwork& network = flow.built->network;
-  double sum = gross_rate(*flow.built, flow.motion);
+  double sum = gross_rates(*flow.built, flow.motion).sum();
   for (int t = 0; t < network.throats(); ++t)
     sum += flow.built->conductances.value[t] *
            (std::abs(flow.relative_pressures[network.throat_pores[t][0]]) +

@@ -72,9 +72,11 @@ void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen
     reciprocal_rates(*built.force_matrix, *built.sum_order, built.bases, motion, team, rates);
 }
 
-double gross_rate(const BuiltNetwork& built, const Motion& motion) {
-  if (built.geometric_rates) return gross_rate(*built.geometric_rates, motion);
-  return built.force_matrix ? gross_rate(*built.force_matrix, built.bases, motion) : 0.0;
+Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion) {
+  const int pores = built.network.pores();
+  if (built.geometric_rates) return gross_rates(*built.geometric_rates, motion);
+  if (!built.force_matrix) return Eigen::VectorXd::Zero(pores);
+  return gross_rates(*built.force_matrix, built.bases, motion, pores);
 }
 
 Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources) {

@@ -75,8 +75,8 @@ Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures);
 
 /// dV/dt of each pore, m³/s, from the network as it was built.
 void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates);
-/// What they are summed from, m³/s.
-double gross_rate(const BuiltNetwork& built, const Motion& motion);
+/// What they are summed from, m³/s; zeros where none have been asked for.
+Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion);
 
 /// Pressures (Pa) that sources (m³/s, one entry a pore) cause on the kept factor where every imposed
 /// pressure is 0.

@@ -126,6 +126,7 @@ struct FlowData {
   void refuse_isolated(const std::vector<Isolated>& held) const;
   void measure_grown_areas(double ahead);
   void set_motion(const Packing& packing);
+  double rounding_of_rates() const;
   void update_rates(const Packing& packing);
   /// Rates of a motion, which add up to that of the box as it is now.
   void find_rates(const Motion& of);

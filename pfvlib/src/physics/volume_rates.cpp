@@ -54,12 +54,13 @@ void volume_rates(const VolumeRateMatrix& matrix, const Motion& motion, Team& te
   });
 }
 
-double gross_rate(const VolumeRateMatrix& matrix, const Motion& motion) {
-  double sum = 0.0;
-  for (Eigen::Index e = 0; e < matrix.area.cols(); ++e)
-    sum += matrix.area.col(e).norm() *
-           motion.col(column_of(matrix.mover[static_cast<std::size_t>(e)], motion)).head<3>().norm();
-  return sum;
+Eigen::VectorXd gross_rates(const VolumeRateMatrix& matrix, const Motion& motion) {
+  Eigen::VectorXd gross = Eigen::VectorXd::Zero(matrix.rows());
+  for (int pore = 0; pore < matrix.rows(); ++pore)
+    for (int e = matrix.row_begin[pore]; e < matrix.row_begin[pore + 1]; ++e)
+      gross[pore] += matrix.area.col(e).norm() *
+                     motion.col(column_of(matrix.mover[e], motion)).head<3>().norm();
+  return gross;
 }
 
 Vector6d Bases::load(int base) const {
@@ -174,18 +175,20 @@ void reciprocal_rates(const ForceMatrix& forces, const SumOrder& order, const Ba
     if (bases.face[b] >= 0) rates[bases.pore[b]] += bases.load(b).dot(motion.col(spheres + bases.face[b]));
 }
 
-double gross_rate(const ForceMatrix& forces, const Bases& bases, const Motion& motion) {
-  double sum = 0.0;
+Eigen::VectorXd gross_rates(const ForceMatrix& forces, const Bases& bases, const Motion& motion,
+                            int pores) {
+  Eigen::VectorXd gross = Eigen::VectorXd::Zero(pores);
   for (int row = 0; row < forces.rows(); ++row) {
     const Vector6d own = motion.col(row).cwiseAbs();
     for (int e = forces.row_begin[row]; e < forces.row_begin[row + 1]; ++e)
-      sum += forces.value.col(e).cwiseAbs().dot(own);
+      gross[forces.pore[e]] += forces.value.col(e).cwiseAbs().dot(own);
   }
   const Eigen::Index spheres = spheres_in(motion);
   for (int b = 0; b < bases.size(); ++b)
     if (bases.face[b] >= 0)
-      sum += bases.load(b).cwiseAbs().dot(motion.col(spheres + bases.face[b]).cwiseAbs());
-  return sum;
+      gross[bases.pore[b]] +=
+          bases.load(b).cwiseAbs().dot(motion.col(spheres + bases.face[b]).cwiseAbs());
+  return gross;
 }
 
 }  // namespace pfv

@@ -46,8 +46,9 @@ SumOrder sum_order(const ForceMatrix& forces, const Packing::Ids& ids, int pores
 /// depends on it. Cost: a pass over S.
 void reciprocal_rates(const ForceMatrix& forces, const SumOrder& order, const Bases& bases,
                       const Motion& motion, Team& team, Eigen::VectorXd& rates);
-/// What that is summed from, m³/s: sums of the rates are exact to its round-off.
-double gross_rate(const ForceMatrix& forces, const Bases& bases, const Motion& motion);
+/// What the rate of each pore is summed from, m³/s: it is exact to its round-off.
+Eigen::VectorXd gross_rates(const ForceMatrix& forces, const Bases& bases, const Motion& motion,
+                            int pores);
 
 /// E = dV/dx (thesis eqs. 4.4-4.8) in compressed rows, one a pore: the area vectors (m²) that the
 /// velocities of spheres and walls are multiplied with.
@@ -63,6 +64,6 @@ VolumeRateMatrix volume_rate_matrix(const PoreNetwork& network, const Spheres& s
 /// dV/dt = E v, m³/s, one entry a pore; walls move along their normals.
 void volume_rates(const VolumeRateMatrix& matrix, const Motion& motion, Team& team,
                   Eigen::VectorXd& rates);
-double gross_rate(const VolumeRateMatrix& matrix, const Motion& motion);
+Eigen::VectorXd gross_rates(const VolumeRateMatrix& matrix, const Motion& motion);
 
 }  // namespace pfv
