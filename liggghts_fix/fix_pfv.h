@@ -135,6 +135,7 @@ class FixPfv : public Fix {
     double gross_motion = 0.0;  // at the last solve
     double limit = -1.0;        // of the explicit coupling, s; negative: not known; rank 0
     std::int64_t networks = 0;  // when it was asked for
+    std::int64_t last_network = 0;  // of the last solve
   } plan_;
 
   // rank 0 only

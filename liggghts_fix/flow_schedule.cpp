@@ -101,8 +101,10 @@ void FixPfv::plan_next_solve(int steps) {
     const double section = M_PI * radii.squaredNorm() / static_cast<double>(radii.size());
     double area = 0.0;
     for (const pfv::Face face : pfv::all_faces) area = std::max(area, box_.area(face));
+    const bool new_network = flow_->retriangulations() != plan_.last_network;
+    plan_.last_network = flow_->retriangulations();
     interval_->take(grains_.packing().ids, flow_->forces(), flow_->face_forces(), steps,
-                    load_beside_fluid(on_meshes), area, section, most_steps());
+                    load_beside_fluid(on_meshes), area, section, most_steps(), new_network);
     told[0] = interval_->steps();
     told[1] = interval_->held().offset;
     told[2] = interval_->share_of_fluid();

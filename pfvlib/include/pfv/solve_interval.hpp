@@ -34,10 +34,11 @@ class SolveInterval {
 
   /// Takes in the loads of a solve after `steps` steps. `face_load` (N): the largest load on a face beside the
   /// fluid's; `face_area` (m²): the largest; `section` (m²): mean cross-section of the grains; `most`:
-  /// steps that may be held at most, >= 1. `ids`: of the grains; another set begins anew.
+  /// steps that may be held at most, >= 1. `ids`: of the grains; another set begins anew. `new_network`: the
+  /// first solve on it, whose loads differ from the last by no change in time: the interval stays.
   void take(const Packing::Ids& ids, const Forces& forces,
             const std::array<Eigen::Vector3d, 6>& faces, int steps, double face_load,
-            double face_area, double section, int most);
+            double face_area, double section, int most, bool new_network = false);
 
   int steps() const { return steps_; }       ///< from the last solve to the next
   const HeldLoads& held() const { return held_; }
@@ -59,6 +60,7 @@ class SolveInterval {
   bool known_ = false, trend_known_ = false, continues_ = false;
   int steps_ = 1, last_steps_ = 1;
   double error_ = 0.0, largest_error_ = 0.0, share_ = 0.0;
+  Errors memory_{0.0, 0.0};  ///< of the errors over the steps, or their square: it fades
   Packing::Ids ids_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> last_, trend_;  ///< loads, and their change a step
   std::array<Eigen::Vector3d, 6> last_faces_{}, face_trend_{};

@@ -80,11 +80,16 @@ Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion) {
 }
 
 Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources) {
+  return homogeneous_pressures(built, *built.solver, sources);
+}
+
+Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, LinearSolver& solver,
+                                      const Eigen::VectorXd& sources) {
   Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x = b;
   const auto& unknown = built.unknowns.of_pore;
   for (std::size_t p = 0; p < unknown.size(); ++p)
     if (unknown[p] >= 0) b[unknown[p]] += sources[static_cast<Eigen::Index>(p)];
-  if (built.unknowns.count > 0) built.solver->solve(b, x);
+  if (built.unknowns.count > 0) solver.solve(b, x);
   Eigen::VectorXd pressures = Eigen::VectorXd::Zero(sources.size());
   for (std::size_t p = 0; p < unknown.size(); ++p)
     if (unknown[p] >= 0) pressures[static_cast<Eigen::Index>(p)] = x[unknown[p]];

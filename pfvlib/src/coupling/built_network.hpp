@@ -25,6 +25,7 @@ namespace pfv {
 struct ImplicitFactor {
   ImplicitSystem system;
   std::unique_ptr<LinearSolver> solver;
+  std::optional<bool> loses_digits;  ///< as of BuiltNetwork
   Matrix6Xd yielding;  ///< `yielding` of the grains and the six faces whose A is in the factor
 };
 
@@ -81,6 +82,9 @@ Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion);
 /// Pressures (Pa) that sources (m³/s, one entry a pore) cause on the kept factor where every imposed
 /// pressure is 0.
 Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources);
+/// The same by another solver for the same unknowns.
+Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, LinearSolver& solver,
+                                      const Eigen::VectorXd& sources);
 
 CellExtents cell_extents(const PoreNetwork& network, const Spheres& spheres, int axis);
 

@@ -107,28 +107,30 @@ Eigen::VectorXd pressure_correction(const FlowData& flow) {
   return rounding ? correction : none;
 }
 
-void FlowData::refine_pressures() {
+void FlowData::refine_pressures(LinearSolver& solver, std::optional<bool>& loses_digits,
+                                const std::function<void()>& follow) {
   // A dense packing of 40 000 spheres loses 1.5e-10: that is not worth a second solve at each step.
   constexpr double lost = 1e-9, exact = 1e-10, hopeless = 1e-6;
   constexpr int sweeps = 4;
   if (built->unknowns.count == 0 || is_iterative(options.solver) ||
-      options.precision == Precision::mixed || !built->loses_digits.value_or(true))
+      options.precision == Precision::mixed || !loses_digits.value_or(true))
     return;
   double last = 0.0;
   std::optional<double> rounding;  // seldom needed
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     const Eigen::VectorXd correction =
-        homogeneous_pressures(*built, continuity_defect(*this, box));
+        homogeneous_pressures(*built, solver, continuity_defect(*this, box));
     const double largest = relative_pressures.cwiseAbs().maxCoeff();
     last = correction.cwiseAbs().maxCoeff();
     if (last > exact * largest) {
       if (!rounding) rounding = rounding_of_pressures(*this, box);
       if (last <= *rounding) return;
     }
-    if (!built->loses_digits) built->loses_digits = last > lost * largest;
-    if (!*built->loses_digits || last <= exact * largest) return;
+    if (!loses_digits) loses_digits = last > lost * largest;
+    if (!*loses_digits || last <= exact * largest) return;
     relative_pressures += correction;
     pressures = relative_pressures.array() + reference;
+    follow();
     last /= largest;
   }
   if (!(last <= hopeless)) throw too_far_apart(*built, fluid);

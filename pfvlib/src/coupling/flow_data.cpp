@@ -252,7 +252,7 @@ void FlowData::solve_pressures(double at_time, LinearSolver& solver) {
     throw SolverError(solver.name() +
                       " returned pressures that are not finite; the conductances span too many "
                       "orders of magnitude or the imposed values are too large");
-  if (&solver == built->solver.get()) refine_pressures();
+  if (&solver == built->solver.get()) refine_pressures(solver, built->loses_digits, [] {});
 }
 
 Eigen::Vector3d FlowData::buoyancy_of(int sphere) const {

@@ -6,6 +6,7 @@
 #include "physics/chebyshev_stages.hpp"
 #include "pfv/flow.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace pfv {
@@ -137,7 +138,9 @@ struct FlowData {
   /// Where conductances lie so far apart that a solve on the kept factor loses digits of the pressures
   /// (found out by the first solve on it): iterative refinement with the continuity defect, which
   /// keeps them. Throws SolverError where that does not converge.
-  void refine_pressures();
+  /// `follow` brings up to date what follows from the pressures in the same step.
+  void refine_pressures(LinearSolver& solver, std::optional<bool>& loses_digits,
+                        const std::function<void()>& follow);
   Eigen::Vector3d buoyancy_of(int sphere) const;
   void compute_forces(const Packing& packing);
   void refuse_shear_forces(Coupling coupling) const;

@@ -2,6 +2,7 @@
 // A step in which pressures and velocities are found together.
 #include "coupling/flow_data.hpp"
 #include "coupling/phase_clock.hpp"
+#include "pfv/error.hpp"
 
 namespace pfv {
 
@@ -38,10 +39,16 @@ void FlowData::factor_implicit(const Matrix6Xd& yielding) {
       ++counts.order;
     }
     const PhaseClock clock(seconds.factor);
-    implicit.solver->factor(implicit.system.matrix);
+    try {
+      implicit.solver->factor(implicit.system.matrix);
+    } catch (const SolverError& error) {
+      built->implicit.reset();
+      throw too_far_apart(*built, fluid, error.what());
+    }
     ++counts.factor;
   }
   implicit.yielding = yielding;
+  implicit.loses_digits.reset();
 }
 
 /// The theta method in the drag: w(theta) = w + theta dt/m (held + S p) together with G p = Q - S^T w(theta),
@@ -68,9 +75,13 @@ void FlowData::run_implicit(const Packing& packing, double step, double at_time,
   rates_of(*built, expected, *team, rates);
   spread_over_pores(growth);
   solve_pressures(at_time, *built->implicit->solver);
-  motion = forced.moved_by(pressure_loads());
-  rates_of(*built, motion, *team, rates);
-  spread_over_pores(growth);
+  const auto follow = [&] {
+    motion = forced.moved_by(pressure_loads());
+    rates_of(*built, motion, *team, rates);
+    spread_over_pores(growth);
+  };
+  follow();
+  refine_pressures(*built->implicit->solver, built->implicit->loses_digits, follow);
   unpaid_growth = step * (growth_beyond_rates(motion) - growth_beyond_rates(expected));
   refuse_isolated(built->implicit->system.isolated);
 }

@@ -10,7 +10,8 @@ namespace {
 
 constexpr int longest = 1000;  // steps: something may begin to move meanwhile
 constexpr double aim = 0.7;    // of the tolerance
-constexpr double fastest_growth = 2.0, fastest_fall = 0.25;  // of the interval, at a solve
+constexpr double fastest_growth = 1.5, fastest_fall = 0.25;  // of the interval, at a solve
+constexpr double fading = 0.9;  // of what errors were, at a solve: they pass through zero where trends turn
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> loads_of(const Forces& forces) {
   Eigen::Matrix<double, 6, Eigen::Dynamic> loads(6, forces.total.cols());
@@ -42,6 +43,7 @@ void SolveInterval::restart() {
   known_ = trend_known_ = continues_ = false;
   steps_ = last_steps_ = 1;
   error_ = 0.0;
+  memory_ = {0.0, 0.0};
   held_ = {};
 }
 
@@ -66,29 +68,39 @@ SolveInterval::Errors SolveInterval::errors_of(const Forces& forces,
 }
 
 void SolveInterval::choose(Errors errors, int most) {
-  continues_ = trend_known_ && errors.continued < errors.held && most > 2;
   const double wanted = aim * tolerance_;
   const double now = last_steps_;
   // the middles of two intervals of n steps are n apart; what is held errs with that, a trend with its square
-  const auto stretched = [&](double error, double order) {
-    return error > 0.0 ? now * std::pow(wanted / error, 1.0 / order) : fastest_growth * now;
-  };
-  const double next = continues_ ? stretched(errors.continued, 2.0) : stretched(errors.held, 1.0);
-  const double bounded = std::clamp(next, fastest_fall * now, fastest_growth * now);
+  memory_.held = std::max(errors.held / now, fading * memory_.held);
+  if (trend_known_)
+    memory_.continued = std::max(errors.continued / (now * now), fading * memory_.continued);
+  const double unlimited = fastest_growth * now + 1.0;
+  const double if_held = memory_.held > 0.0 ? wanted / memory_.held : unlimited;
+  const double if_continued = !trend_known_               ? 0.0
+                              : memory_.continued > 0.0 ? std::sqrt(wanted / memory_.continued)
+                                                        : unlimited;
+  continues_ = if_continued > if_held && most > 2;
+  const double bounded =
+      std::clamp(std::max(if_held, continues_ ? if_continued : 0.0), fastest_fall * now, unlimited);
   steps_ = static_cast<int>(std::clamp(std::floor(bounded + 1e-9), 1.0,
                                        static_cast<double>(std::min(most, longest))));
 }
 
 void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
                          const std::array<Eigen::Vector3d, 6>& faces, int steps, double face_load,
-                         double face_area, double section, int most) {
+                         double face_area, double section, int most,
+                         bool new_network) {
   if (known_ && (ids.size() != ids_.size() || ids != ids_)) restart();
   Eigen::Matrix<double, 6, Eigen::Dynamic> loads = loads_of(forces);
   const double of_fluid = largest_norm(faces), of_grains = root_mean_square(forces.total);
   const double face_scale = std::max(face_load, of_fluid);
   const double grain_scale = std::max(of_grains, face_scale / face_area * section);
   share_ = std::max(ratio(of_fluid, face_scale), ratio(of_grains, grain_scale));
-  if (known_) {
+  if (known_ && new_network) {
+    trend_known_ = continues_ = false;
+    last_steps_ = steps;
+    steps_ = std::min(steps_, std::max(most, 1));
+  } else if (known_) {
     const double apart = 0.5 * (steps + last_steps_);  // of the middles of this interval and the last
     const Errors errors = errors_of(forces, faces, face_scale, grain_scale, apart);
     error_ = continues_ ? errors.continued : errors.held;
