@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <sstream>
 
 namespace LAMMPS_NS {
 
@@ -246,6 +247,63 @@ void FixPfv::prepare_flow(const pfv::Box& box) {
   restored_.reset();
 }
 
+/// Between runs anything may be moved or replaced: grains (displace_atoms, set), walls and meshes of the
+/// same name. The network then begins anew, as that of a new fix would, and so does an interval of
+/// couple_every, whose mean velocities would hold the displacement. Collective, after read_host.
+void FixPfv::begin_anew_where_moved() {
+  int moved = 0;
+  on_root([&] {
+    if (!flow_ || !left_) return;
+    const pfv::Packing packing = grains_.packing();
+    faces_.follow_grains(packing.positions, packing.radii);
+    moved = !left_->is(packing, faces_.positions());
+    if (!moved) return;
+    flow_->rebuild();
+    left_ = left_state(packing, faces_.positions());
+  });
+  MPI_Bcast(&moved, 1, MPI_INT, 0, world);
+  if (!moved) return;
+  steps_since_flow_ = 0;
+  elapsed_ = 0.0;
+  last_positions_ = faces_.positions();
+  last_grains_ = grains_.snapshot();
+}
+
+/// What the next run compares with. The grains of the last flow step stay as they were gathered.
+void FixPfv::remember_state() {
+  PfvGrainExchange now(lmp);
+  now.gather(groups_, false);
+  everywhere([&] { faces_.read(); });
+  on_root([&] {
+    const pfv::Packing packing = now.packing();
+    if (packing.size() > 0) faces_.follow_grains(packing.positions, packing.radii);
+    if (flow_) left_ = left_state(packing, faces_.positions());
+  });
+}
+
+/// Grains that are there but all outside: most likely the box or the units are not those meant. A box
+/// that grains will be poured into has none yet, and is left in peace. Rank 0.
+void FixPfv::warn_of_empty_box() const {
+  const pfv::Packing packing = grains_.packing();
+  const auto inside = ((packing.positions.colwise() - box_.lower).array() > 0.0 &&
+                       (packing.positions.colwise() - box_.upper).array() < 0.0)
+                          .colwise()
+                          .all();
+  if (packing.size() == 0 || inside.any()) return;
+  std::ostringstream text;
+  const auto reach = [&text](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    for (int axis = 0; axis < 3; ++axis)
+      text << (axis ? ", " : "") << "xyz"[axis] << " from " << from[axis] << " to " << to[axis];
+  };
+  text << "Fix pfv (id " << id << "): all " << packing.size() << " grains of the group are outside the "
+       << "flow box, the fluid acts on none; the box reaches ";
+  reach(box_.lower, box_.upper);
+  text << " m, the centres of the grains ";
+  reach(packing.positions.rowwise().minCoeff(), packing.positions.rowwise().maxCoeff());
+  text << " m";
+  error->warning(FLERR, text.str().c_str());
+}
+
 Eigen::Vector3d FixPfv::gravity() const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < modify->nfix; ++i) {
@@ -266,16 +324,19 @@ void FixPfv::pre_force(int) { faces_.begin_forces(); }
 void FixPfv::setup(int) {
   settings_.fluid.gravity = gravity();
   read_host();
+  begin_anew_where_moved();
   box_ = current_box();
   if (steps_since_flow_ == 0) last_positions_ = faces_.positions();
   on_root([&] {
     place_faces(box_);
+    warn_of_empty_box();
     prepare_flow(box_);
     flow_->evaluate(grains_.packing(), flow_step());
     evaluate_flow();
     if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
     check_time_step();
     if (interval_) interval_->restart();
+    left_.reset();
   });
   plan_ = {};
   begin_plan();
@@ -370,6 +431,7 @@ int FixPfv::modify_param(int narg, char** arg) {
 /// Boundary values stay as they were: between runs LIGGGHTS cannot evaluate every variable.
 void FixPfv::write_restart(FILE* file) {
   read_host();
+  begin_anew_where_moved();
   PfvRestartRecord record;
   record.step = update->ntimestep;
   record.steps_since_flow = steps_since_flow_;

@@ -12,6 +12,7 @@ FixStyle(pfv,FixPfv)
 #include "arguments.h"
 #include "face_sources.h"
 #include "grain_exchange.h"
+#include "left_state.h"
 #include "other_fixes.h"
 #include "restart_record.h"
 #include "result_files.h"
@@ -75,6 +76,9 @@ class FixPfv : public Fix {
   void advance();
   void prepare_flow(const pfv::Box& box);
   void place_faces(pfv::Box& box);
+  void begin_anew_where_moved();
+  void remember_state();
+  void warn_of_empty_box() const;
   Eigen::Vector3d gravity() const;
   void after_flow_call();
   void apply_forces();
@@ -142,6 +146,7 @@ class FixPfv : public Fix {
   std::unique_ptr<pfv::FlowModel> flow_;
   std::unique_ptr<PfvResultFiles> files_;
   std::optional<pfv::FlowState> restored_;
+  std::optional<PfvLeftState> left_;  // by the last run, as far as it is known; none within a run
   std::optional<pfv::Report> report_;
   std::optional<pfv::SolveInterval> interval_;
   PfvSnapshot last_grains_;

@@ -43,6 +43,7 @@ const pfv::Report& FixPfv::report() {
 }
 
 void FixPfv::post_run() {
+  remember_state();
   on_root([&] {
     if (flow_) print_phases();
   });

@@ -119,10 +119,13 @@ def run(folder, settings, measures, out, amplitude, duration, viscosity=None, to
     if out != settings["OUT"]:
         shutil.copy(folder / f"{settings['OUT']}.restart", folder / f"{out}.restart")
     clear(folder, out)
+    words = words or "retriangulate 0.01"
+    if "coupling" not in words.split():
+        words += " coupling auto"
     variables = {"r2": bed.mean_radius(grains), "LX": bed.LENGTH, "LY": bed.WIDTH,
                  "viscosity": viscosity, "time_step": step, "steps": steps, "every": every,
                  "stride": stride, "report": max(1, steps // 100), "amplitude": amplitude,
-                 "top": top_words(top, measures), "words": words or "retriangulate 0.01",
+                 "top": top_words(top, measures), "words": words,
                  "sensors": sensor_words(measures), "out": out, "name": folder.name,
                  "g": bed.BUOYANT, "shake": shake, "shake_end": min(shake_end, duration + 1.0)}
     said, cpu = scene.liggghts(folder, f"in.{folder.name}", variables, out + "_run",

@@ -16,8 +16,10 @@ class RebuildLag(CoupledTest):
 
     def run_with(self, words, name="forces.dump", **options):
         """(forces of each step, rows of thermo output, bytes of the dump, screen)"""
+        if "retriangulate" not in words:
+            words += f" retriangulate {STRAIN}"
         screen = self.liggghts(
-            f"include in.packing\nfix flow all pfv {FLOW} retriangulate {STRAIN} {words}\n" +
+            f"include in.packing\nfix flow all pfv {FLOW} {words}\n" +
             THERMO + dump(name) + "run 60\n", **options)
         rows = read_thermo((self.folder / "log.liggghts").read_text())
         path = self.folder / name
