@@ -111,9 +111,9 @@ bool moment_in_triangle(const std::array<Vertex, 3>& facet, int corner, const Sp
     if (chord >= radius) continue;
     const Eigen::Vector3d inward = (i == 0 ? 1.0 : -1.0) * normal.cross(u[i]);
     moment -= moment_beyond_chord(u[i], inward, radius, chord);
-    cut_angle += std::acos(chord / radius);
+    cut_angle += arctangent(std::sqrt((radius - chord) * (radius + chord)), chord);
   }
-  return cut_angle == 0.0 || cut_angle <= std::atan2(u[0].cross(u[1]).norm(), u[0].dot(u[1]));
+  return cut_angle == 0.0 || cut_angle <= arctangent(u[0].cross(u[1]).norm(), u[0].dot(u[1]));
 }
 
 }  // namespace

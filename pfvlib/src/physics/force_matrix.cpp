@@ -78,117 +78,112 @@ struct Makings {
   }
 };
 
-Eigen::Vector3d moment_of_disc(const Makings& m, int f, int k) {
-  const auto& facet = m.network.facet_vertices[f];
-  if (is_wall(facet[k])) return Eigen::Vector3d::Zero();
-  const Eigen::Vector3d area = area_vector(facet, m.vertices);
-  const double size = area.norm();
-  if (size == 0.0) return Eigen::Vector3d::Zero();
-  return disc_moment(facet, k, m.vertices, area / size, size);
-}
-
-/// Moment about the corner of the box of a unit pressure on a throat's fluid area: that on its facets less
-/// that on the discs, m³.
-Eigen::Vector3d moment_of_fluid(const Makings& m, int t) {
-  const Eigen::Vector3d normal = m.throats.normal.col(t);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), discs = sum;
-  for (int f = m.network.throat_facets[t]; f < m.network.throat_facets[t + 1]; ++f) {
-    sum += moment_vector(corners_of(m.network.facet_vertices[f], m.vertices));
-    for (int k = 0; k < 3; ++k) {
-      const double part = m.throats.facet_disc[f][k];
-      if (part == 0.0) continue;
-      discs += part * m.vertices.centres.col(m.network.facet_vertices[f][k]) + moment_of_disc(m, f, k);
-    }
-  }
-  return sum - discs.cross(normal);
-}
-
-/// What each corner of each facet takes of a unit pressure difference across its throat.
+/// What each corner of each facet of one throat takes of a unit pressure difference across it.
 ///
 /// A sphere's share of the viscous force acts towards the centroid of the fluid area, but no farther from its
 /// own centre than its surface: at the centroid, small spheres beside a wide throat would be spun by levers
 /// many times their radius. The couple that is left, so that all moments together are those of a pressure on
 /// the fluid area, goes to the spheres of the throat by share and radius, those that it turns least.
-class Corners {
+class ThroatLoads {
  public:
-  Corners(const Makings& makings, Team& team) : m_(makings) {
-    if (!m_.parts.moments) return;
-    fluid_.resize(3, m_.network.throats());
-    couple_.setZero(3, m_.parts.viscous ? m_.network.throats() : 0);
-    constexpr int piece = 512;
-    team.run((m_.network.throats() + piece - 1) / piece, [&](int number) {
-      const int last = std::min((number + 1) * piece, m_.network.throats());
-      for (int t = number * piece; t < last; ++t) {
-        fluid_.col(t) = moment_of_fluid(m_, t);
-        if (m_.parts.viscous) couple_.col(t) = couple(t);
-      }
-    });
-  }
+  explicit ThroatLoads(const Makings& makings) : m_(makings) {}
 
-  Vector6d operator()(int t, int f, int k) const {
+  /// Loads of the corners of throat t, facet by facet, into `loads`.
+  void operator()(int t, Vector6d* loads) {
+    t_ = t;
+    first_ = m_.network.throat_facets[t];
+    last_ = m_.network.throat_facets[t + 1];
     const Eigen::Vector3d normal = m_.throats.normal.col(t);
-    Vector6d load;
-    load.head<3>() = m_.area(t, f, k) * normal;
-    load.tail<3>().setZero();
-    if (m_.parts.moments) load.tail<3>() = moment(t, f, k, normal);
-    return load;
+    if (m_.parts.moments) {
+      measure(normal);
+      if (m_.parts.viscous) find_couple(normal);
+    }
+    for (int f = first_; f < last_; ++f)
+      for (int k = 0; k < 3; ++k) {
+        Vector6d& load = loads[3 * (f - first_) + k];
+        load.head<3>() = m_.area(t, f, k) * normal;
+        if (m_.parts.moments)
+          load.tail<3>() = moment(f, k, normal);
+        else
+          load.tail<3>().setZero();
+      }
   }
 
  private:
   Vertex vertex(int f, int k) const { return m_.network.facet_vertices[f][k]; }
+  auto centre(int f, int k) const { return m_.vertices.centres.col(vertex(f, k)); }
 
-  /// Of a share that acts at the centroid of the fluid area, about the sphere's centre.
-  Eigen::Vector3d at_centroid(int t, int f, int k) const {
-    return m_.shares[f][k] * (fluid_.col(t) - m_.throats.fluid_area[t] *
-                                                  m_.vertices.centres.col(vertex(f, k))
-                                                      .cross(m_.throats.normal.col(t)));
+  /// First moments of the discs, and the moment about the corner of the box of a unit pressure on the fluid
+  /// area: that on the facets less that on the discs.
+  void measure(const Eigen::Vector3d& normal) {
+    discs_.resize(3 * (last_ - first_));
+    Eigen::Vector3d facets = Eigen::Vector3d::Zero(), discs = facets;
+    for (int f = first_; f < last_; ++f) {
+      const auto& facet = m_.network.facet_vertices[f];
+      const Eigen::Vector3d area = area_vector(facet, m_.vertices);
+      const double size = area.norm();
+      facets += is_wall(facet[2]) ? moment_vector(corners_of(facet, m_.vertices))
+                                  : Eigen::Vector3d((centre(f, 0) + centre(f, 1) + centre(f, 2))
+                                                        .cross(area) / 3.0);
+      for (int k = 0; k < 3; ++k) {
+        Eigen::Vector3d& own = discs_[3 * (f - first_) + k];
+        own.setZero();
+        const double part = m_.throats.facet_disc[f][k];
+        if (part == 0.0 || size == 0.0) continue;
+        own = disc_moment(facet, k, m_.vertices, area / size, size);
+        discs += part * centre(f, k) + own;
+      }
+    }
+    fluid_ = facets - discs.cross(normal);
   }
 
-  /// Part of the way to the centroid at which the sphere's surface lies, at most 1.
-  double reach(int t, int f, int k, const Eigen::Vector3d& moment) const {
-    const double lever = moment.norm();
-    const double most = std::abs(m_.shares[f][k]) * m_.throats.fluid_area[t] *
-                        m_.vertices.radii[vertex(f, k)];
-    return lever > most ? most / lever : 1.0;
+  /// Of a share that acts at the centroid of the fluid area, about the sphere's centre; `reach`: the part of
+  /// the way to there at which the sphere's surface lies, at most 1.
+  Eigen::Vector3d at_centroid(int f, int k, const Eigen::Vector3d& normal, double& reach) const {
+    const double share = m_.shares[f][k], area = m_.throats.fluid_area[t_];
+    const Eigen::Vector3d full = share * (fluid_ - area * centre(f, k).cross(normal));
+    const double lever = full.norm();
+    const double most = std::abs(share) * area * m_.vertices.radii[vertex(f, k)];
+    reach = lever > most ? most / lever : 1.0;
+    return full;
   }
-
   double weight(int f, int k) const {
-    return is_wall(vertex(f, k))
-               ? 0.0
-               : std::max(m_.shares[f][k], 0.0) * m_.vertices.radii[vertex(f, k)];
+    return std::max(m_.shares[f][k], 0.0) * m_.vertices.radii[vertex(f, k)];
   }
 
-  /// What is left to the spheres of throat t, over the sum of their weights.
-  Eigen::Vector3d couple(int t) const {
-    Eigen::Vector3d left = Eigen::Vector3d::Zero();
-    double weights = 0.0;
-    for (int f = m_.network.throat_facets[t]; f < m_.network.throat_facets[t + 1]; ++f)
+  /// What is left to the spheres, over the sum of their weights.
+  void find_couple(const Eigen::Vector3d& normal) {
+    couple_.setZero();
+    double weights = 0.0, reach = 1.0;
+    for (int f = first_; f < last_; ++f)
       for (int k = 0; k < 3; ++k) {
         if (is_wall(vertex(f, k))) continue;
-        const Eigen::Vector3d full = at_centroid(t, f, k);
-        left += (1.0 - reach(t, f, k, full)) * full;
+        const Eigen::Vector3d full = at_centroid(f, k, normal, reach);
+        couple_ += (1.0 - reach) * full;
         weights += weight(f, k);
       }
-    return weights > 0.0 ? Eigen::Vector3d(left / weights) : Eigen::Vector3d::Zero();
+    if (weights > 0.0) couple_ /= weights;
+    else couple_.setZero();
   }
 
-  Eigen::Vector3d moment(int t, int f, int k, const Eigen::Vector3d& normal) const {
+  Eigen::Vector3d moment(int f, int k, const Eigen::Vector3d& normal) const {
     if (is_wall(vertex(f, k)))
-      return m_.parts.viscous ? Eigen::Vector3d(m_.shares[f][k] * fluid_.col(t))
-                              : Eigen::Vector3d::Zero();
+      return m_.parts.viscous ? Eigen::Vector3d(m_.shares[f][k] * fluid_)
+                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     if (m_.parts.viscous) {
-      const Eigen::Vector3d full = at_centroid(t, f, k);
-      sum = reach(t, f, k, full) * full + weight(f, k) * couple_.col(t);
+      double reach = 1.0;
+      const Eigen::Vector3d full = at_centroid(f, k, normal, reach);
+      sum = reach * full + weight(f, k) * couple_;
     }
-    if (m_.parts.pressure && m_.throats.facet_disc[f][k] != 0.0)
-      sum += moment_of_disc(m_, f, k).cross(normal);
+    if (m_.parts.pressure) sum += discs_[3 * (f - first_) + k].cross(normal);
     return sum;
   }
 
   const Makings& m_;
-  Eigen::Matrix3Xd fluid_;   ///< `moment_of_fluid` of each throat
-  Eigen::Matrix3Xd couple_;  ///< `couple` of each throat
+  int t_ = 0, first_ = 0, last_ = 0;
+  std::vector<Eigen::Vector3d> discs_;
+  Eigen::Vector3d fluid_, couple_;
 };
 
 /// A vertex of a facet that takes a force, as one number.
@@ -235,30 +230,53 @@ class RowPores {
   std::vector<int> row_of_, pores_;
 };
 
-/// Calls work(first row, one past the last) on a piece of the rows for each thread.
-template <class Work>
-void run_pieces(Team& team, int rows, const Work& work) {
-  const int pieces = team.threads();
+/// The pattern of S: each row's pores, ascending.
+void find_pattern(ForceMatrix& matrix, const Makings& m, Team& team) {
+  const CornerLists lists(m);
+  const int rows = m.spheres + 6, pieces = team.threads();
   const auto bound = [&](int number) {
     return static_cast<int>(static_cast<std::int64_t>(rows) * number / pieces);
   };
-  team.run(pieces, [&](int piece) { work(bound(piece), bound(piece + 1)); });
+  std::vector<std::vector<int>> found(pieces);
+  matrix.row_begin.assign(rows + 1, 0);
+  team.run(pieces, [&](int piece) {
+    RowPores pores(m.network, lists);
+    found[piece].reserve(4 * static_cast<std::size_t>(m.network.cells()) / pieces + 64);
+    for (int row = bound(piece); row < bound(piece + 1); ++row) {
+      const std::vector<int>& own = pores.of(row);
+      matrix.row_begin[row + 1] = static_cast<int>(own.size());
+      found[piece].insert(found[piece].end(), own.begin(), own.end());
+    }
+  });
+  for (int row = 0; row < rows; ++row) matrix.row_begin[row + 1] += matrix.row_begin[row];
+  matrix.pore.reserve(matrix.row_begin.back());
+  for (std::vector<int>& piece : found) {
+    matrix.pore.insert(matrix.pore.end(), piece.begin(), piece.end());
+    piece = {};
+  }
 }
 
-/// Entries of one row, those of one pore added in the order of the corners.
-void fill_row(ForceMatrix& matrix, const Makings& m, const CornerLists& lists,
-              const Corners& corners, int row, std::vector<int>& place) {
-  for (int e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e) {
-    place[matrix.pore[e]] = e;
-    matrix.value.col(e).setZero();
-  }
-  for (int c = lists.begin[row]; c < lists.begin[row + 1]; ++c) {
-    const int f = lists.corner[c] / 3, t = lists.throat_of_facet[f];
-    const Vector6d load = corners(t, f, lists.corner[c] % 3);
-    matrix.value.col(place[m.network.throat_pores[t][0]]) += load;
-    matrix.value.col(place[m.network.throat_pores[t][1]]) -= load;
-  }
+/// Adds the loads of throats first ... last - 1, whose corners are in `loads`, to their entries.
+void add_throats(ForceMatrix& matrix, const Makings& m, int first, int last, const Vector6d* loads) {
+  const auto entry = [&](int row, int pore) {
+    const auto begin = matrix.pore.begin() + matrix.row_begin[row];
+    const auto end = matrix.pore.begin() + matrix.row_begin[row + 1];
+    return std::lower_bound(begin, end, pore) - matrix.pore.begin();
+  };
+  const int first_facet = m.network.throat_facets[first];
+  for (int t = first; t < last; ++t)
+    for (int f = m.network.throat_facets[t]; f < m.network.throat_facets[t + 1]; ++f)
+      for (int k = 0; k < 3; ++k) {
+        if (m.area(t, f, k) == 0.0) continue;
+        const Vector6d& load = loads[3 * (f - first_facet) + k];
+        const int row = m.row(f, k);
+        matrix.value.col(entry(row, m.network.throat_pores[t][0])) += load;
+        matrix.value.col(entry(row, m.network.throat_pores[t][1])) -= load;
+      }
 }
+
+/// Throats that a thread takes at a time, and those whose loads are kept until they are added, in order.
+constexpr int piece_size = 512, round_size = 16 * piece_size;
 
 }  // namespace
 
@@ -281,28 +299,22 @@ ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
                          const Throats& throats, const ViscousShares& shares, int spheres,
                          ForceParts parts, Team& team) {
   const Makings makings{network, vertices, throats, shares, spheres, parts};
-  const CornerLists lists(makings);
-  const Corners corners(makings, team);
-  const int rows = spheres + 6;
   ForceMatrix matrix;
-  matrix.row_begin.assign(rows + 1, 0);
-  run_pieces(team, rows, [&](int first, int last) {
-    RowPores pores(network, lists);
-    for (int row = first; row < last; ++row)
-      matrix.row_begin[row + 1] = static_cast<int>(pores.of(row).size());
-  });
-  for (int row = 0; row < rows; ++row) matrix.row_begin[row + 1] += matrix.row_begin[row];
-  matrix.pore.resize(matrix.row_begin.back());
-  matrix.value.resize(6, matrix.row_begin.back());
-  run_pieces(team, rows, [&](int first, int last) {
-    RowPores pores(network, lists);
-    std::vector<int> place(network.pores());
-    for (int row = first; row < last; ++row) {
-      const std::vector<int>& own = pores.of(row);
-      std::copy(own.begin(), own.end(), matrix.pore.begin() + matrix.row_begin[row]);
-      fill_row(matrix, makings, lists, corners, row, place);
-    }
-  });
+  find_pattern(matrix, makings, team);
+  matrix.value.setZero(6, matrix.row_begin.back());
+  std::vector<Vector6d> loads;
+  for (int first = 0; first < network.throats(); first += round_size) {
+    const int last = std::min(first + round_size, network.throats());
+    const int first_facet = network.throat_facets[first];
+    loads.resize(3 * (network.throat_facets[last] - first_facet));
+    team.run((last - first + piece_size - 1) / piece_size, [&](int piece) {
+      ThroatLoads loads_of_throat(makings);
+      const int begin = first + piece * piece_size, end = std::min(begin + piece_size, last);
+      for (int t = begin; t < end; ++t)
+        loads_of_throat(t, &loads[3 * (network.throat_facets[t] - first_facet)]);
+    });
+    add_throats(matrix, makings, first, last, loads.data());
+  }
   return matrix;
 }
 
@@ -337,12 +349,20 @@ Loads gradient_forces(const PoreNetwork& network, const Spheres& vertices, const
                       const ViscousShares& shares, int spheres, ForceParts parts,
                       const Eigen::Vector3d& gradient) {
   const Makings makings{network, vertices, throats, shares, spheres, parts};
-  Team alone;
-  const Corners corners(makings, alone);
   Loads loads = Loads::Zero(6, spheres + 6);
-  makings.for_each_corner([&](int t, int f, int k) {
-    loads.col(makings.row(f, k)) -= gradient.dot(network.throat_offset(t)) * corners(t, f, k);
-  });
+  ThroatLoads loads_of_throat(makings);
+  std::vector<Vector6d> own;
+  for (int t = 0; t < network.throats(); ++t) {
+    const double drop = -gradient.dot(network.throat_offset(t));
+    if (drop == 0.0) continue;
+    const int first = network.throat_facets[t];
+    own.resize(3 * (network.throat_facets[t + 1] - first));
+    loads_of_throat(t, own.data());
+    for (int f = first; f < network.throat_facets[t + 1]; ++f)
+      for (int k = 0; k < 3; ++k)
+        if (makings.area(t, f, k) != 0.0)
+          loads.col(makings.row(f, k)) += drop * own[3 * (f - first) + k];
+  }
   return loads;
 }
 
