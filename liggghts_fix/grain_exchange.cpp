@@ -71,6 +71,7 @@ void PfvGrainExchange::sort_by_tag() {
   grains_.velocities.resize(3, count);
   grains_.radii.resize(count);
   masses_.resize(count);
+  grains_.displaced_volumes.resize(0);
   forces_.resize(3, sent_width_ > plain_width ? count : 0);
   for (int k = 0; k < count; ++k) {
     const double* row = &received_[std::size_t(sent_width_) * order_[k]];

@@ -40,6 +40,12 @@ class PfvGrainExchange : protected Pointers {
   pfv::GrainDynamics dynamics(const std::array<pfv::Piston, 6>& pistons) const {
     return {{masses_.data(), masses_.size()}, {forces_.data(), 3, forces_.cols()}, pistons};
   }
+  /// What rigid bodies make of the gathered grains: masses (kg) and displaced volumes (m³; empty: whole
+  /// spheres); rank 0.
+  void stand_for_bodies(const Eigen::VectorXd& masses, const Eigen::VectorXd& displaced) {
+    masses_ = masses;
+    grains_.displaced_volumes = displaced;
+  }
   PfvSnapshot snapshot() const;                              ///< rank 0
 
   /// Hands force (columns 0-2, N) and pressure (3, Pa) to the atoms as they were gathered and zeros

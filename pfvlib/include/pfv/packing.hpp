@@ -18,6 +18,9 @@ namespace pfv {
 /// | radii      | N     | m    | > 0                                                  |
 /// | velocities | 3 x N | m/s  | empty (3 x 0): the grains are at rest and no volume  |
 /// |            |       |      | rate is computed                                     |
+/// | displaced_ | N     | m³   | what each sphere's lift counts: of spheres that       |
+/// | volumes    |       |      | overlap in one rigid body its share of their union    |
+/// |            |       |      | (pfv/union_parts.hpp); empty: whole spheres           |
 struct Packing {
   using Ids = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
 
@@ -25,6 +28,7 @@ struct Packing {
   Eigen::Map<const Eigen::Matrix3Xd> positions{nullptr, 3, 0};
   Eigen::Map<const Eigen::VectorXd> radii{nullptr, 0};
   Eigen::Map<const Eigen::Matrix3Xd> velocities{nullptr, 3, 0};
+  Eigen::Map<const Eigen::VectorXd> displaced_volumes{nullptr, 0};
 
   Eigen::Index size() const { return ids.size(); }
 };
@@ -36,12 +40,14 @@ struct PackingArrays {
   Eigen::Matrix3Xd positions;
   Eigen::VectorXd radii;
   Eigen::Matrix3Xd velocities = Eigen::Matrix3Xd(3, 0);
+  Eigen::VectorXd displaced_volumes;
 
   Packing view() const {
     return {{ids.data(), ids.size()},
             {positions.data(), 3, positions.cols()},
             {radii.data(), radii.size()},
-            {velocities.data(), 3, velocities.cols()}};
+            {velocities.data(), 3, velocities.cols()},
+            {displaced_volumes.data(), displaced_volumes.size()}};
   }
 };
 

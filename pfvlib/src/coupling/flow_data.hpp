@@ -153,6 +153,7 @@ struct FlowData {
   double mean_strain(const Eigen::VectorXd& changes) const;
 
   Eigen::Matrix3Xd velocities;  ///< of the active spheres
+  Eigen::VectorXd displaced;    ///< m³, likewise
   Eigen::VectorXd sources, mean_pressures;
 };
 
