@@ -29,7 +29,7 @@ namespace LAMMPS_NS {
 
 using namespace FixConst;
 
-FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), grains_(lmp) {
+FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), grains_(lmp), bodies_(lmp) {
   check_environment();
   everywhere([&] { settings_ = parse_pfv(narg - 3, arg + 3); });
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
@@ -215,6 +215,7 @@ pfv::Box FixPfv::current_box() {
 /// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
   grains_.gather(groups_, needs_forces());
+  bodies_.apply(groups_, settings_.options.buoyancy && !settings_.fluid.gravity.isZero(0.0), grains_);
   everywhere([&] { faces_.read(); });
   pistons_ = faces_.pistons(needs_forces());
 }
@@ -263,6 +264,8 @@ void FixPfv::begin_anew_where_moved() {
   });
   MPI_Bcast(&moved, 1, MPI_INT, 0, world);
   if (!moved) return;
+  bodies_.forget();
+  read_host();
   steps_since_flow_ = 0;
   elapsed_ = 0.0;
   last_positions_ = faces_.positions();
@@ -430,6 +433,7 @@ int FixPfv::modify_param(int narg, char** arg) {
 /// run that starts from the file will: both go on from the same network, strain and pressures.
 /// Boundary values stay as they were: between runs LIGGGHTS cannot evaluate every variable.
 void FixPfv::write_restart(FILE* file) {
+  bodies_.forget();
   read_host();
   begin_anew_where_moved();
   PfvRestartRecord record;

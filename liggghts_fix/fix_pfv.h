@@ -10,6 +10,7 @@ FixStyle(pfv,FixPfv)
 #define LMP_FIX_PFV_H
 
 #include "arguments.h"
+#include "bodies.h"
 #include "face_sources.h"
 #include "grain_exchange.h"
 #include "left_state.h"
@@ -119,8 +120,10 @@ class FixPfv : public Fix {
   PfvSettings settings_;
   PfvFaceSources faces_;
   PfvGrainExchange grains_;
+  PfvBodies bodies_;
   PfvGroups groups_;
   std::string obstacle_;  // to staged and implicit coupling
+  bool rigid_bodies_ = false;
   std::array<pfv::Piston, 6> pistons_{};
   class FixPropertyAtom* per_atom_ = nullptr;
   pfv::Box box_;

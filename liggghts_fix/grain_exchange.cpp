@@ -78,6 +78,7 @@ void PfvGrainExchange::sort_by_tag() {
   grains_.radii.resize(count);
   grains_.angular_velocities.resize(3, count);
   masses_.resize(count);
+  grains_.displaced_volumes.resize(0);
   const bool with_forces = sent_width_ > plain_width;
   forces_.resize(3, with_forces ? count : 0);
   torques_.resize(3, with_forces ? count : 0);

@@ -45,6 +45,12 @@ class PfvGrainExchange : protected Pointers {
             {torques_.data(), 3, torques_.cols()},
             {inertias_.data(), inertias_.size()}};
   }
+  /// What rigid bodies make of the gathered grains: masses (kg) and displaced volumes (m³; empty: whole
+  /// spheres); rank 0.
+  void stand_for_bodies(const Eigen::VectorXd& masses, const Eigen::VectorXd& displaced) {
+    masses_ = masses;
+    grains_.displaced_volumes = displaced;
+  }
   PfvSnapshot snapshot() const;                              ///< rank 0
 
   /// Hands force (columns 0-2, N), pressure (3, Pa) and torque (4-6, N m) to the atoms as they were gathered

@@ -5,6 +5,7 @@
 
 #include "atom.h"
 #include "fix.h"
+#include "fix_multisphere.h"
 #include "fix_setforce.h"
 #include "modify.h"
 
@@ -48,6 +49,7 @@ bool leaves_forces_alone(const Fix& fix) {
   return std::find(styles.begin(), styles.end(), style_of(fix)) != styles.end();
 }
 
+
 std::string name_of(const Fix& fix) { return "fix " + style_of(fix) + " '" + fix.id + "'"; }
 
 }  // namespace
@@ -82,9 +84,9 @@ std::string PfvOtherFixes::obstacle_to_long_steps() const {
     const bool frozen_before = !later && style_of(other) == "freeze";
     const bool adds_later =
         later && acts && !overwrites_forces(other) && !leaves_forces_alone(other);
-    if (!other.rigid_flag && !frozen_before && !adds_later) continue;
+    if (!moves_bodies_of_flow(other) && !frozen_before && !adds_later) continue;
     if (!share_grains_with(other)) continue;
-    if (other.rigid_flag)
+    if (moves_bodies_of_flow(other))
       return name_of(other) + " moves grains as rigid bodies, which only the "
                               "explicit coupling can follow; use "
                               "`coupling explicit`";
@@ -96,6 +98,25 @@ std::string PfvOtherFixes::obstacle_to_long_steps() const {
                             "define this fix after it, as the last one that adds forces";
   }
   return {};
+}
+
+bool PfvOtherFixes::rigid_bodies() const {
+  for (int i = 0; i < modify->nfix; ++i)
+    if (moves_bodies_of_flow(*modify->fix[i])) return true;
+  return false;
+}
+
+/// LIGGGHTS marks a fix rigid, but not a fix multisphere, whose group is always all: of a smaller flow
+/// none may be part of a body.
+bool PfvOtherFixes::moves_bodies_of_flow(const Fix& fix) const {
+  if (fix.rigid_flag) return share_grains_with(fix);
+  const auto* bodies = dynamic_cast<const FixMultisphere*>(&fix);
+  if (!bodies || flow_.igroup == 0) return bodies;
+  int any = 0;
+  for (int i = 0; i < atom->nlocal && !any; ++i)
+    any = (atom->mask[i] & flow_.groupbit) && bodies->belongs_to(i) >= 0;
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
+  return any != 0;
 }
 
 bool PfvOtherFixes::share_grains_with(const Fix& other) const {

@@ -31,9 +31,14 @@ class PfvOtherFixes : protected Pointers {
   /// it can. Such a step has to know each force that acts beside the fluid's over it. Collective.
   std::string obstacle_to_long_steps() const;
 
+  /// Whether grains of the flow are parts of rigid bodies; collective.
+  bool rigid_bodies() const;
+
   bool share_grains_with(const class Fix& other) const;  ///< collective
 
  private:
+  bool moves_bodies_of_flow(const class Fix& fix) const;  ///< collective
+
   const class Fix& flow_;
 };
 

@@ -42,6 +42,7 @@ PfvCoupling cheaper(double ratio, double steps, Eigen::Index grains) {
 void FixPfv::bind_coupling() {
   const PfvOtherFixes others(lmp, *this);
   groups_ = others.groups();
+  rigid_bodies_ = others.rigid_bodies();
   obstacle_.clear();
   if (!needs_forces()) return;
   obstacle_ = settings_.couple_every > 1
@@ -158,9 +159,10 @@ void FixPfv::check_time_step() {
   if (needs_forces() || ratio <= settings_.safety) return;
   std::snprintf(text, sizeof text,
                 "Fix pfv (id %s): the flow step of %.4g s is %.4g times the limit of the explicit "
-                "coupling; grains will shake. Use a time step below %.3g s, `coupling staged` or "
-                "`coupling implicit`",
-                id, flow_step(), ratio, settings_.safety * limit / settings_.couple_every);
+                "coupling; grains will shake. Use a time step below %.3g s%s",
+                id, flow_step(), ratio, settings_.safety * limit / settings_.couple_every,
+                rigid_bodies_ ? " (rigid bodies have no other coupling)"
+                              : ", `coupling staged` or `coupling implicit`");
   error->warning(FLERR, text);
 }
 

@@ -19,6 +19,9 @@ namespace pfv {
 /// | velocities | 3 x N | m/s  | empty (3 x 0): the grains are at rest and no volume  |
 /// |            |       |      | rate is computed                                     |
 /// | angular_velocities | 3 x N | rad/s | about the centres; empty (3 x 0): nothing spins |
+/// | displaced_ | N     | m³   | what each sphere's lift counts: of spheres that       |
+/// | volumes    |       |      | overlap in one rigid body its share of their union    |
+/// |            |       |      | (pfv/union_parts.hpp); empty: whole spheres           |
 struct Packing {
   using Ids = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
 
@@ -27,6 +30,7 @@ struct Packing {
   Eigen::Map<const Eigen::VectorXd> radii{nullptr, 0};
   Eigen::Map<const Eigen::Matrix3Xd> velocities{nullptr, 3, 0};
   Eigen::Map<const Eigen::Matrix3Xd> angular_velocities{nullptr, 3, 0};
+  Eigen::Map<const Eigen::VectorXd> displaced_volumes{nullptr, 0};
 
   Eigen::Index size() const { return ids.size(); }
 };
@@ -39,13 +43,15 @@ struct PackingArrays {
   Eigen::VectorXd radii;
   Eigen::Matrix3Xd velocities = Eigen::Matrix3Xd(3, 0);
   Eigen::Matrix3Xd angular_velocities = Eigen::Matrix3Xd(3, 0);
+  Eigen::VectorXd displaced_volumes;
 
   Packing view() const {
     return {{ids.data(), ids.size()},
             {positions.data(), 3, positions.cols()},
             {radii.data(), radii.size()},
             {velocities.data(), 3, velocities.cols()},
-            {angular_velocities.data(), 3, angular_velocities.cols()}};
+            {angular_velocities.data(), 3, angular_velocities.cols()},
+            {displaced_volumes.data(), displaced_volumes.size()}};
   }
 };
 

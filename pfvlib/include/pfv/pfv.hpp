@@ -14,4 +14,5 @@
 #include "pfv/packing.hpp"
 #include "pfv/report.hpp"
 #include "pfv/time_step.hpp"
+#include "pfv/union_parts.hpp"
 #include "pfv/version.hpp"

@@ -48,7 +48,8 @@ struct Task {
 
 BackgroundRebuild::BackgroundRebuild(const Packing& packing, const BuildSettings& settings,
                                      double step, bool moving) {
-  Task task{{packing.ids, packing.positions, packing.radii},
+  Task task{{packing.ids, packing.positions, packing.radii, Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0),
+             Eigen::VectorXd()},
             settings.box,
             settings.fluid,
             settings.options,

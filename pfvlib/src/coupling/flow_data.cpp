@@ -9,12 +9,6 @@
 
 namespace pfv {
 
-namespace {
-
-constexpr double pi = 3.14159265358979323846;
-
-}  // namespace
-
 const Forces& FlowData::compute(const Packing& packing, double step, bool advance,
                                 Coupling coupling, const GrainDynamics* grains) {
   if (fluid.bulk_modulus && !(step > 0.0))
@@ -27,6 +21,9 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     balance_.reset();
     swept = advance && coupling == Coupling::explicit_step ? swept_volume(step) : 0.0;
     update_network(packing, step, advance);
+    displaced.resize(built->grains.spheres.size());
+    for (Eigen::Index i = 0; i < displaced.size(); ++i)
+      displaced[i] = displaced_volume(packing, built->grains.columns[i]);
     factor_pressures(*built, build_settings(), step, {counts, seconds});
     counts.pinned_pores = 0;
     for (const Isolated& isolated : built->system.isolated)
@@ -256,8 +253,7 @@ void FlowData::solve_pressures(double at_time, LinearSolver& solver) {
 }
 
 Eigen::Vector3d FlowData::buoyancy_of(int sphere) const {
-  const double r = built->grains.spheres.radii[sphere];
-  return -fluid.density * 4.0 / 3.0 * pi * r * r * r * fluid.gravity;
+  return -fluid.density * displaced[sphere] * fluid.gravity;
 }
 
 /// What a macroscopic gradient adds to S p.

@@ -165,6 +165,7 @@ struct FlowData {
   /// Sum of |changes| over sum of volumes.
   double mean_strain(const Eigen::VectorXd& changes) const;
 
+  Eigen::VectorXd displaced;    ///< m³, by the active spheres
   Eigen::VectorXd sources, mean_pressures;
 };
 

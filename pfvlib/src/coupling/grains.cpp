@@ -20,6 +20,9 @@ std::string place(const Eigen::Vector3d& x) {
 
 void check_shapes(const Packing& packing) {
   const Eigen::Index n = packing.size();
+  if (packing.displaced_volumes.size() != n && packing.displaced_volumes.size() != 0)
+    throw InputError("packing: " + std::to_string(packing.displaced_volumes.size()) +
+                     " displaced volumes for " + std::to_string(n) + " spheres; give one a sphere");
   if (packing.positions.cols() != n || packing.radii.size() != n ||
       (packing.velocities.cols() != n && packing.velocities.cols() != 0))
     throw InputError("packing: ids, positions, radii and velocities have different lengths (" +
@@ -41,6 +44,8 @@ void check_values(const Packing& packing) {
     if (packing.velocities.cols() > 0 && !packing.velocities.col(k).allFinite())
       throw InputError(sphere + ": its velocity " + place(packing.velocities.col(k)) +
                        " is not finite");
+    if (packing.displaced_volumes.size() > 0 && !std::isfinite(packing.displaced_volumes[k]))
+      throw InputError(sphere + ": its displaced volume is not finite");
   }
 }
 
@@ -131,6 +136,13 @@ void gather_velocities(const Packing& packing, const std::vector<int>& columns,
   else
     for (std::size_t i = 0; i < columns.size(); ++i)
       velocities.col(static_cast<Eigen::Index>(i)) = packing.velocities.col(columns[i]);
+}
+
+double displaced_volume(const Packing& packing, Eigen::Index column) {
+  constexpr double pi = 3.14159265358979323846;
+  if (packing.displaced_volumes.size() == packing.size()) return packing.displaced_volumes[column];
+  const double r = packing.radii[column];
+  return 4.0 / 3.0 * pi * r * r * r;
 }
 
 bool at_rest(const Packing& packing, const Box& box) {

@@ -28,6 +28,8 @@ inline double inertia_of(double mass, double radius) { return 0.4 * mass * radiu
 /// 3 x active spheres; zeros where the packing has none.
 void gather_velocities(const Packing& packing, const std::vector<int>& columns,
                        Eigen::Matrix3Xd& velocities);
+/// m³: what the lift of a sphere counts.
+double displaced_volume(const Packing& packing, Eigen::Index column);
 bool at_rest(const Packing& packing, const Box& box);
 
 }  // namespace pfv

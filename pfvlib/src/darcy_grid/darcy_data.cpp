@@ -16,8 +16,6 @@ namespace pfv {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 Eigen::Matrix3Xd cell_centres(const Grid& grid) {
   Eigen::Matrix3Xd centres(3, grid.size());
   for (int cell = 0; cell < grid.size(); ++cell) centres.col(cell) = grid.centre(cell);
@@ -189,7 +187,7 @@ void DarcyData::compute_forces(const Packing& packing, const Eigen::Matrix3Xd& v
   if (options.buoyancy && !fluid.gravity.isZero(0.0))
     for (int i = 0; i < spheres.size(); ++i)
       grain.pressure.col(i) -=
-          4.0 / 3.0 * pi * std::pow(spheres.radii[i], 3) * fluid.density * fluid.gravity;
+          displaced_volume(packing, b.grains.columns[i]) * fluid.density * fluid.gravity;
   const Eigen::Index n = packing.size();
   forces.total = spread(grain.pressure + grain.drag, b.grains.columns, n);
   if (options.split_forces) {

@@ -62,8 +62,8 @@ BallSection cut_within_cell(const PoreNetwork& network, const Spheres& spheres, 
 
 }  // namespace
 
-SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
-                       const Spheres& spheres) {
+std::vector<SolidUnion> solid_parts(const PoreNetwork& network, const Spheres& vertices,
+                                    const Spheres& spheres) {
   std::vector<BallSection> cut(spheres.size());
   std::vector<char> centre_outside(spheres.size(), 0);  // of its own power cell
   for (int c = 0; c < network.cells(); ++c) {
@@ -79,13 +79,23 @@ SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
       }
   }
   for (const int k : network.hidden) centre_outside[k] = 1;
-  SolidUnion solid;
+  std::vector<SolidUnion> parts(spheres.size());
   for (int k = 0; k < spheres.size(); ++k) {
     const double r = spheres.radii[k];
     // the cones of the power cell's facets fill the whole ball only if they surround its centre
     const double whole = centre_outside[k] ? 0.0 : 4.0 * pi;
-    solid.volume += whole * r * r * r / 3.0 - cut[k].volume;
-    solid.area += whole * r * r - cut[k].area;
+    parts[k].volume = whole * r * r * r / 3.0 - cut[k].volume;
+    parts[k].area = whole * r * r - cut[k].area;
+  }
+  return parts;
+}
+
+SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
+                       const Spheres& spheres) {
+  SolidUnion solid;
+  for (const SolidUnion& part : solid_parts(network, vertices, spheres)) {
+    solid.volume += part.volume;
+    solid.area += part.area;
   }
   return solid;
 }

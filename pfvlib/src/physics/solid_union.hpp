@@ -4,6 +4,8 @@
 #include "network/spheres.hpp"
 #include "pfv/network.hpp"
 
+#include <vector>
+
 namespace pfv {
 
 struct SolidUnion {
@@ -18,5 +20,8 @@ struct SolidUnion {
 /// periodic axes).
 SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
                        const Spheres& spheres);
+/// The part of each sphere of the packing: what of the union lies in its power cell.
+std::vector<SolidUnion> solid_parts(const PoreNetwork& network, const Spheres& vertices,
+                                    const Spheres& spheres);
 
 }  // namespace pfv
