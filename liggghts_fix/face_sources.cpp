@@ -73,18 +73,23 @@ MeshModuleStress* stress_of(FixMeshSurface* mesh) {
   return mesh ? dynamic_cast<MeshModuleStress*>(mesh->get_module("stress")) : nullptr;
 }
 
-/// The servo that makes the mesh a piston along the axis, or null.
-const MeshModuleStressServo* piston_servo(FixMeshSurface* mesh, int axis) {
+/// The servo that controls the mesh's force along the axis, or null.
+const MeshModuleStressServo* force_servo(FixMeshSurface* mesh, int axis) {
   constexpr int of_a_force = 3;  // LIGGGHTS' own number, private to its source
   auto* servo = mesh ? dynamic_cast<MeshModuleStressServo*>(mesh->get_module("servo")) : nullptr;
   if (!servo || !stress_of(mesh)) return nullptr;
   const double along = (servo->*member(PfvServoAxis()))[axis];
-  const bool integral_alone = servo->*member(PfvServoKp()) == 0.0 &&
-                              servo->*member(PfvServoKd()) == 0.0 &&
-                              servo->*member(PfvServoKi()) > 0.0;
-  return servo->*member(PfvServoIntegrates()) && !(servo->*member(PfvServoAutomatic())) &&
-                 servo->*member(PfvServoStyle()) == of_a_force && integral_alone &&
+  return servo->*member(PfvServoIntegrates()) && servo->*member(PfvServoStyle()) == of_a_force &&
                  servo->*member(PfvServoSetPoint()) != 0.0 && std::abs(std::abs(along) - 1.0) < 1e-9
+             ? servo
+             : nullptr;
+}
+
+/// The one that makes it a piston, or null.
+const MeshModuleStressServo* piston_servo(FixMeshSurface* mesh, int axis) {
+  const MeshModuleStressServo* servo = force_servo(mesh, axis);
+  return servo && !(servo->*member(PfvServoAutomatic())) && servo->*member(PfvServoKp()) == 0.0 &&
+                 servo->*member(PfvServoKd()) == 0.0 && servo->*member(PfvServoKi()) > 0.0
              ? servo
              : nullptr;
 }
@@ -203,6 +208,19 @@ std::array<pfv::Piston, 6> PfvFaceSources::pistons(bool forces) const {
   MPI_Allreduce(MPI_IN_PLACE, of_grains.data(), 6, MPI_DOUBLE, MPI_SUM, world);
   for (int number = 0; number < 6; ++number) pistons[number].other_force += of_grains[number];
   return pistons;
+}
+
+std::array<PfvServoGain, 6> PfvFaceSources::proportional_gains() const {
+  std::array<PfvServoGain, 6> gains{};
+  for (int number = 0; number < 6; ++number) {
+    const MeshModuleStressServo* servo = force_servo(meshes_[number], number / 2);
+    if (!servo) continue;
+    const double kp = servo->*member(PfvServoKp());
+    gains[number] = {std::abs(kp * (servo->*member(PfvServoLargest())) /
+                              (servo->*member(PfvServoSetPoint()))),
+                     kp};
+  }
+  return gains;
 }
 
 bool PfvFaceSources::any_mesh() const {

@@ -13,6 +13,13 @@
 
 namespace LAMMPS_NS {
 
+/// Of a servo that controls a force along the face's axis: velocity (m/s) it answers 1 N with, and the
+/// setting that this follows from; 0 without such a servo.
+struct PfvServoGain {
+  double gain = 0.0;
+  double kp = 0.0;
+};
+
 class PfvFaceSources : protected Pointers {
  public:
   explicit PfvFaceSources(class LAMMPS* lmp) : Pointers(lmp) {}
@@ -42,6 +49,9 @@ class PfvFaceSources : protected Pointers {
   /// m = target / (vel_max ki). With `forces`: also the force of the grains on them in this step and the
   /// target; collective.
   std::array<pfv::Piston, 6> pistons(bool forces) const;
+
+  /// The faces under a servo with a proportional gain: v = kp vel_max (target - F) / target.
+  std::array<PfvServoGain, 6> proportional_gains() const;
 
   bool any_mesh() const;
   /// Adds a force (N) to what the meshes' stress modules record in this step, so that outputs and

@@ -328,6 +328,7 @@ void FixPfv::setup(int) {
     place_faces(box_);
     warn_of_empty_box();
     prepare_flow(box_);
+    check_servos();
     flow_->evaluate(grains_.packing(), flow_step());
     evaluate_flow();
     if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
