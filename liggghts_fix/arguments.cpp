@@ -275,7 +275,6 @@ void parse_retriangulation(Words& words, pfv::Options& options) {
 void parse_couple_every(Words& words, PfvSettings& settings) {
   settings.couple_error.reset();
   settings.couple_every = 1;
-  settings.couple_every_given = true;
   if (!words.take("auto")) {
     settings.couple_every = words.count("auto or the number of steps");
     return;

@@ -89,7 +89,6 @@ struct PfvSettings {
   /// In its place, by default: as the loads change, with this error, as a part of the load. Absent where each
   /// step or each N-th is solved.
   std::optional<double> couple_error = default_couple_error;
-  bool couple_every_given = false;
   static constexpr double default_couple_error = 1e-3;
   PfvCoupling coupling = PfvCoupling::explicit_forces;
   bool time_step_check = true;

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace LAMMPS_NS {
 
@@ -73,18 +74,23 @@ MeshModuleStress* stress_of(FixMeshSurface* mesh) {
   return mesh ? dynamic_cast<MeshModuleStress*>(mesh->get_module("stress")) : nullptr;
 }
 
-/// The servo that makes the mesh a piston along the axis, or null.
-const MeshModuleStressServo* piston_servo(FixMeshSurface* mesh, int axis) {
+/// The servo that controls the mesh's force along the axis, or null.
+const MeshModuleStressServo* force_servo(FixMeshSurface* mesh, int axis) {
   constexpr int of_a_force = 3;  // LIGGGHTS' own number, private to its source
   auto* servo = mesh ? dynamic_cast<MeshModuleStressServo*>(mesh->get_module("servo")) : nullptr;
   if (!servo || !stress_of(mesh)) return nullptr;
   const double along = (servo->*member(PfvServoAxis()))[axis];
-  const bool integral_alone = servo->*member(PfvServoKp()) == 0.0 &&
-                              servo->*member(PfvServoKd()) == 0.0 &&
-                              servo->*member(PfvServoKi()) > 0.0;
-  return servo->*member(PfvServoIntegrates()) && !(servo->*member(PfvServoAutomatic())) &&
-                 servo->*member(PfvServoStyle()) == of_a_force && integral_alone &&
+  return servo->*member(PfvServoIntegrates()) && servo->*member(PfvServoStyle()) == of_a_force &&
                  servo->*member(PfvServoSetPoint()) != 0.0 && std::abs(std::abs(along) - 1.0) < 1e-9
+             ? servo
+             : nullptr;
+}
+
+/// The one that makes it a piston, or null.
+const MeshModuleStressServo* piston_servo(FixMeshSurface* mesh, int axis) {
+  const MeshModuleStressServo* servo = force_servo(mesh, axis);
+  return servo && !(servo->*member(PfvServoAutomatic())) && servo->*member(PfvServoKp()) == 0.0 &&
+                 servo->*member(PfvServoKd()) == 0.0 && servo->*member(PfvServoKi()) > 0.0
              ? servo
              : nullptr;
 }
@@ -164,6 +170,49 @@ void PfvFaceSources::read_mesh(int number) {
   }
   positions_[number] = 0.5 * (global[axis] - global[3 + axis]);
   velocities_[number] = 0.5 * (global[6] - global[7]);
+  read_gliding(number);
+}
+
+/// The rigid motion in the face's plane that is nearest to that of the nodes: their mean velocity about their
+/// middle, and the spin by least squares.
+void PfvFaceSources::read_gliding(int number) {
+  gliding_[number] = {};
+  TriMesh* mesh = meshes_[number]->triMesh();
+  if (!mesh->isMoving()) return;
+  auto* velocities = mesh->prop().getElementProperty<MultiVectorContainer<double, 3, 3>>("v");
+  const int axis = number / 2, a = (axis + 1) % 3, b = (axis + 2) % 3;
+  // number, places, velocities, moment of the velocities and of the places, by the two other axes
+  std::array<double, 7> sums{};
+  for (int i = 0; velocities && i < mesh->sizeLocal(); ++i)
+    for (int j = 0; j < 3; ++j) {
+      double x[3];
+      mesh->node(i, j, x);
+      const double* v = (*velocities)(i)[j];
+      const double terms[7] = {1.0, x[a], x[b], v[a], v[b], x[a] * v[b] - x[b] * v[a],
+                               x[a] * x[a] + x[b] * x[b]};
+      for (int k = 0; k < 7; ++k) sums[k] += terms[k];
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 7, MPI_DOUBLE, MPI_SUM, world);
+  if (sums[0] == 0.0) return;
+  for (int k = 1; k < 7; ++k) sums[k] /= sums[0];
+  Gliding& gliding = gliding_[number];
+  gliding.pivot[a] = sums[1];
+  gliding.pivot[b] = sums[2];
+  gliding.velocity[a] = sums[3];
+  gliding.velocity[b] = sums[4];
+  const double spread = sums[6] - sums[1] * sums[1] - sums[2] * sums[2];
+  const double moment = sums[5] - sums[1] * sums[4] + sums[2] * sums[3];
+  const double size = std::sqrt(std::max(spread, 0.0));
+  // what is left of a plain translation is round-off
+  const double noise = 1e-9 * (std::abs(sums[3]) + std::abs(sums[4])) * size;
+  if (spread > 0.0 && std::abs(moment) > noise) gliding.spin = moment / spread;
+}
+
+pfv::FaceCondition PfvFaceSources::condition(int number, pfv::Wall wall,
+                                             pfv::Boundary boundary) const {
+  const Gliding& gliding = gliding_[number];
+  return {wall, std::move(boundary), velocities_[number], gliding.velocity, gliding.spin,
+          gliding.pivot};
 }
 
 void PfvFaceSources::follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& centres,
@@ -215,6 +264,19 @@ double PfvFaceSources::largest_load() const {
   double largest = 0.0;
   for (const double load : loads) largest = std::max(largest, std::abs(load));
   return largest;
+}
+
+std::array<PfvServoGain, 6> PfvFaceSources::proportional_gains() const {
+  std::array<PfvServoGain, 6> gains{};
+  for (int number = 0; number < 6; ++number) {
+    const MeshModuleStressServo* servo = force_servo(meshes_[number], number / 2);
+    if (!servo) continue;
+    const double kp = servo->*member(PfvServoKp());
+    gains[number] = {std::abs(kp * (servo->*member(PfvServoLargest())) /
+                              (servo->*member(PfvServoSetPoint()))),
+                     kp};
+  }
+  return gains;
 }
 
 bool PfvFaceSources::any_mesh() const {

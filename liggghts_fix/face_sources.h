@@ -13,6 +13,13 @@
 
 namespace LAMMPS_NS {
 
+/// Of a servo that controls a force along the face's axis: velocity (m/s) it answers 1 N with, and the
+/// setting that this follows from; 0 without such a servo.
+struct PfvServoGain {
+  double gain = 0.0;
+  double kp = 0.0;
+};
+
 class PfvFaceSources : protected Pointers {
  public:
   explicit PfvFaceSources(class LAMMPS* lmp) : Pointers(lmp) {}
@@ -33,6 +40,8 @@ class PfvFaceSources : protected Pointers {
   const std::array<double, 6>& positions() const { return positions_; }    ///< m
   /// m/s along the face's axis; that of a mesh's nodes, 0 for everything else.
   const std::array<double, 6>& velocities() const { return velocities_; }
+  /// The face with its motion in its own plane, which a mesh's nodes have as parts of one rigid body.
+  pfv::FaceCondition condition(int number, pfv::Wall wall, pfv::Boundary boundary) const;
 
   /// Remembers what the meshes' stress modules hold before the forces of a step are reckoned.
   void begin_forces();
@@ -42,6 +51,9 @@ class PfvFaceSources : protected Pointers {
   /// m = target / (vel_max ki). With `forces`: also the force of the grains on them in this step and the
   /// target; collective.
   std::array<pfv::Piston, 6> pistons(bool forces) const;
+
+  /// The faces under a servo with a proportional gain: v = kp vel_max (target - F) / target.
+  std::array<PfvServoGain, 6> proportional_gains() const;
 
   bool any_mesh() const;
   /// The largest force that grains put on one of the meshes along its axis in this step, N; collective.
@@ -54,6 +66,7 @@ class PfvFaceSources : protected Pointers {
   void bind_wall(const PfvFace& face, int number);
   void bind_mesh(const PfvFace& face, int number);
   void read_mesh(int number);
+  void read_gliding(int number);
 
   std::array<PfvFace, 6> faces_;
   std::array<class FixMeshSurface*, 6> meshes_{};

@@ -198,7 +198,7 @@ pfv::Box FixPfv::current_box() {
   pfv::Box box;
   for (int number = 0; number < 6; ++number) {
     const PfvFace& face = settings_.faces[number];
-    box.faces[number] = {face.wall, boundary_of(face), faces_.velocities()[number]};
+    box.faces[number] = faces_.condition(number, face.wall, boundary_of(face));
   }
   for (const PfvPatch& patch : settings_.patches)
     box.patches.push_back({patch.face, patch.rectangle, boundary_of(patch.boundary)});
@@ -334,6 +334,7 @@ void FixPfv::setup(int) {
     place_faces(box_);
     warn_of_empty_box();
     prepare_flow(box_);
+    check_servos();
     flow_->evaluate(grains_.packing(), flow_step());
     evaluate_flow();
     if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();

@@ -110,6 +110,11 @@ class FixPfv : public Fix {
   void take_implicit(bool advance);
   double estimated_limit() const;
   void check_time_step();
+  void warn_of_small_grains(double limit);
+  void check_servos();
+  std::string swinging_servo(int face, const PfvServoGain& servo, double resistance,
+                             double swing) const;
+  Eigen::Matrix<double, 6, 6> resistances_to(const std::array<PfvServoGain, 6>& gains);
 
   // outputs
   double quantity(int n);
