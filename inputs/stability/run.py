@@ -14,8 +14,9 @@ import compressible
 import consolidations
 import convergence
 import costs
-import growth_rate
+import jumps
 import limits
+import long_lids
 import long_steps
 import maps
 import regions
@@ -24,15 +25,12 @@ import stiffness
 import thesis
 from tables import write_page
 
-TABLES = {"limits": limits.table, "maps": maps.table,
-          "stiffness": stiffness.table, "regions": regions.table,
-          "thesis": thesis.table, "compressible": compressible.table,
-          "conservation": compressible.conservation, "beyond": beyond.table,
-          "accuracy": accuracy.table, "convergence": convergence.table,
-          "consolidations": consolidations.table, "speed": speed.table, "costs": costs.table,
-          "growth": growth_rate.table, "long_steps": long_steps.table,
-          "floating": long_steps.floating, "shaken": long_steps.shaken,
-          "long_lids": long_steps.lids}
+TABLES = {"limits": limits.table, "beyond": beyond.table, "long_steps": long_steps.table,
+          "long_lids": long_lids.table, "convergence": convergence.table,
+          "accuracy": accuracy.table, "consolidations": consolidations.table, "jumps": jumps.table,
+          "speed": speed.table, "costs": costs.table, "maps": maps.table,
+          "stiffness": stiffness.table, "regions": regions.table, "thesis": thesis.table,
+          "compressible": compressible.table, "conservation": compressible.conservation}
 
 
 def main(words):
