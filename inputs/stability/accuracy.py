@@ -2,12 +2,12 @@
 """Accuracy of long time steps in a consolidation with new networks, over the size ratio."""
 from consolidations import consolidation, largest, percent
 from long_steps import of_ratio
-from packings import POST, STIFFNESS, time_step
+from packings import POST, contact_limit, time_step
 from samples import printed, sample
 from tables import Table
 
 SIZES = (5, 10)  # beside the dense sample, whose grains are nearly alike
-SIXTHS = {"1.2": 320, "5": 640, "10": 640}  # steps of a sixth of the contacts' limit
+SIXTHS = {"1.2": 320, "5": 640, "10": 1280}  # steps of a sixth of the contacts' limit
 VISCOUS = 20  # R of such a step
 PARTS = (4.0, 2.0, 1.0, 0.5)  # of such steps: R = 80, 40, 20, 10
 FINE, COARSE = 0.4, 0.8  # R of the explicit runs
@@ -19,8 +19,8 @@ def samples():
     yield "1.2", data, printed(data, 1.0)[0], 1e-4
     for size in SIZES:
         name = of_ratio(size)
-        report, _ = time_step(POST / f"{name}.csv", "--spheres", 1, "--contact-stiffness", STIFFNESS)
-        yield f"{size:g}", f"post/{name}.data", report["coupling_limit"], report["contact_limit"] / 6
+        report, _ = time_step(POST / f"{name}.csv", "--spheres", 1)
+        yield f"{size:g}", f"post/{name}.data", report["coupling_limit"], contact_limit(name) / 6
 
 
 def table():

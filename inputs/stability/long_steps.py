@@ -5,7 +5,7 @@ import sys
 
 from beyond import power
 from maps import SIZE_GRAINS, SIZE_RATIOS
-from packings import POST, STIFFNESS, packed, rested, time_step
+from packings import POST, STIFFNESS, contact_limit, packed, rested, time_step
 from samples import SCENE, energies
 from stiffness import STIFFNESSES
 from tables import FIGURES, Table
@@ -19,7 +19,7 @@ BELOW = {"a sixth": 0.9, "half": 0.7}  # R of the explicit coupling; at half the
 RATIOS = {STAGED: (10, 100, 1000, 10000), IMPLICIT: (10, 100, 1000, 10000, 100000)}  # R
 FEW = {STAGED: (10, 1000), IMPLICIT: (10, 1000, 100000)}
 STEPS = {EXPLICIT: 500, IMPLICIT: 500, STAGED: 500}
-OF_MANY_STAGES = {1000: 200, 10000: 100}  # staged steps, 48 and 150 stages each
+OF_MANY_STAGES = {1000: 300, 10000: 200}  # staged steps, 48 and 150 stages each
 SIZES = (1.2, 3, 5, 10, 20, 50)
 DEFAULT, PAPERS = "open_throat", "hydraulic_radius"
 MANY, SOLID, OF_MANY = 5000, 0.64, 0.4  # grains; their share of the volume, in contact; of the steps
@@ -46,13 +46,12 @@ class Rows:
         self.found = {}  # of the default law at a sixth, by what varies: {(words, R): eleven energies}
 
     def add(self, what, name, law, part, tried=None, stiffness=STIFFNESS, of_steps=1.0):
-        report, _ = time_step(POST / f"{name}.csv", "--spheres", 1, "--contact-stiffness", stiffness,
-                              law=law)
-        step = PARTS[part] * report["contact_limit"]
+        limit = time_step(POST / f"{name}.csv", "--spheres", 1, law=law)[0]["coupling_limit"]
+        step = PARTS[part] * contact_limit(name, stiffness)
 
         def run(words, ratio):
             steps = OF_MANY_STAGES.get(ratio, STEPS[words]) if words == STAGED else STEPS[words]
-            return energies(f"post/{name}.data", ratio * report["coupling_limit"] / step, step,
+            return energies(f"post/{name}.data", ratio * limit / step, step,
                             round(of_steps * steps), words, kn=stiffness, law=law)
 
         tried = tried or RATIOS
