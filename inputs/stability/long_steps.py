@@ -22,6 +22,8 @@ STEPS = {EXPLICIT: 500, IMPLICIT: 500, STAGED: 500}
 OF_MANY_STAGES = {1000: 300, 10000: 200}  # staged steps, 48 and 150 stages each
 SIZES = (1.2, 3, 5, 10, 20, 50)
 DEFAULT, PAPERS = "open_throat", "hydraulic_radius"
+LONGER, LONGER_SIZES, SHOWN = 4000, (10, 20, 50), (1, 3, 5, 10)  # steps; instants, tenths of them
+LONGER_RUNS = ((EXPLICIT, 0.9), (STAGED, 10), (IMPLICIT, 1000), (IMPLICIT, 100000))
 MANY, SOLID, OF_MANY = 5000, 0.64, 0.4  # grains; their share of the volume, in contact; of the steps
 
 
@@ -85,6 +87,20 @@ def draw_sizes(found):
     save_figure(figure, FIGURES / "stability_long_steps.png")
 
 
+def longer():
+    """Runs that the table above ends while large grains still swing."""
+    rows = Table("size ratio", "coupling", "R", *(f"after {LONGER * k // 10} steps" for k in SHOWN))
+    for size in LONGER_SIZES:
+        name = of_ratio(size)
+        limit = time_step(POST / f"{name}.csv", "--spheres", 1, law=DEFAULT)[0]["coupling_limit"]
+        step = PARTS["a sixth"] * contact_limit(name)
+        for words, ratio in LONGER_RUNS:
+            found = energies(f"post/{name}.data", ratio * limit / step, step, LONGER, words, law=DEFAULT)
+            rows.row(f"{size:g}", words.removeprefix("coupling ").replace(EXPLICIT, "explicit"),
+                     f"{ratio:g}", *(power(found[k]) for k in (SHOWN if len(found) > 1 else [0])))
+    return rows
+
+
 def table():
     rows = Rows()
     for size in SIZES:
@@ -92,7 +108,9 @@ def table():
             rows.add(f"size ratio {size:g}", of_ratio(size), law, part)
     for value in STIFFNESSES:
         rows.add(f"stiffness {value:g} N/m", of_ratio(SIZES[0]), DEFAULT, "a sixth", FEW, value)
-    many = packed(1.2, MANY, SOLID)
+    many = packed(1.2, LONGER, LONGER_SIZES, SHOWN = 4000, (10, 20, 50), (1, 3, 5, 10)  # steps; instants, tenths of them
+LONGER_RUNS = ((EXPLICIT, 0.9), (STAGED, 10), (IMPLICIT, 1000), (IMPLICIT, 100000))
+MANY, SOLID)
     rows.add(f"{MANY} grains", many, DEFAULT, "a sixth", FEW, of_steps=OF_MANY)
     rows.add(f"{MANY} grains", many, PAPERS, "a sixth", FEW, of_steps=OF_MANY)
     draw_sizes(rows.found)
