@@ -18,7 +18,8 @@ RUNS = {10: ("staged", "implicit"), 100: ("staged", "implicit"), 1000: ("staged"
 # two viscosities are not the same in t / viscosity
 SPINS = {"held": (10, 100, 1000, 10000), "free": (10, 100)}
 STYLES = {"held": "nve", "free": "nve/sphere"}
-REFERENCES = {10: ("time_step_check no", 50), 100: ("coupling implicit", 4)}  # parts of STEP
+REFERENCES = {10: ("time_step_check no", 50), 100: ("coupling implicit", 4),
+              1000: ("coupling implicit", 2)}  # parts of STEP
 
 
 @dataclass

@@ -108,9 +108,7 @@ def table():
             rows.add(f"size ratio {size:g}", of_ratio(size), law, part)
     for value in STIFFNESSES:
         rows.add(f"stiffness {value:g} N/m", of_ratio(SIZES[0]), DEFAULT, "a sixth", FEW, value)
-    many = packed(1.2, LONGER, LONGER_SIZES, SHOWN = 4000, (10, 20, 50), (1, 3, 5, 10)  # steps; instants, tenths of them
-LONGER_RUNS = ((EXPLICIT, 0.9), (STAGED, 10), (IMPLICIT, 1000), (IMPLICIT, 100000))
-MANY, SOLID)
+    many = packed(1.2, MANY, SOLID)
     rows.add(f"{MANY} grains", many, DEFAULT, "a sixth", FEW, of_steps=OF_MANY)
     rows.add(f"{MANY} grains", many, PAPERS, "a sixth", FEW, of_steps=OF_MANY)
     draw_sizes(rows.found)
