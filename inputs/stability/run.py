@@ -28,10 +28,11 @@ from tables import write_page
 
 TABLES = {"limits": limits.table, "beyond": beyond.table, "long_steps": long_steps.table,
           "longer": long_steps.longer, "long_lids": long_lids.table, "convergence": convergence.table,
-          "accuracy": accuracy.table, "consolidations": consolidations.table, "spins": spins.table, "jumps": jumps.table,
-          "speed": speed.table, "costs": costs.table, "maps": maps.table,
-          "stiffness": stiffness.table, "regions": regions.table, "thesis": thesis.table,
-          "compressible": compressible.table, "conservation": compressible.conservation}
+          "accuracy": accuracy.table, "consolidations": consolidations.table, "spins": spins.table,
+          "terzaghi": compressible.terzaghi, "jumps": jumps.table, "speed": speed.table,
+          "costs": costs.table, "maps": maps.table, "stiffness": stiffness.table,
+          "regions": regions.table, "thesis": thesis.table, "compressible": compressible.table,
+          "conservation": compressible.conservation}
 
 
 def main(words):
