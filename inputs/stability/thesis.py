@@ -22,7 +22,7 @@ LOOSE = 0.45
 GEOMETRIC = "time_step_check no volume_rates geometric"
 # conductance law, whether with the papers' E
 METHODS = {"papers' law and E": ("hydraulic_radius", True), "papers' law, S^T": ("hydraulic_radius", False),
-           "default": ("open_throat", False)}
+           "default law and E": ("open_throat", True), "default law, S^T": ("open_throat", False)}
 SIZES = [10.0**k for k in np.arange(-5, 0.01, 0.25)]  # of one grain, as parts of the mean
 SCALES = [0.25, 0.5, 1.0, 2.0, 4.0]
 STEPS_420 = [10.0**k for k in np.arange(-1.2, 1.61, 0.1)]  # of eq. 4.20
