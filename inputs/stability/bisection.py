@@ -8,9 +8,9 @@ STEPS = 1000
 LOAD = 20.0  # N, of in.piston
 
 
-def calms_down(data, viscosity, **variables):
+def calms_down(data, viscosity, words="time_step_check no", **variables):
     """Whether the kinetic energy is below its initial value after STEPS steps of a length."""
-    return lambda step: growth(data, viscosity, step, STEPS, "time_step_check no", **variables) <= 1.0
+    return lambda step: growth(data, viscosity, step, STEPS, words, **variables) <= 1.0
 
 
 def bears(data, viscosity, mass):

@@ -27,6 +27,8 @@ DRY = 1.0  # Pa: a fluid that bears nothing
 STRAIN = 1e-4
 LARGE_STRAIN, LARGE_MODULUS = 1e-2, 1e7
 THRESHOLDS = [1.0, 1e-2, 1e-3]  # of new networks, pore strain
+HELD = {"integrate": "nve"}  # spins, without friction (spins.py)
+LATER = (0.1, 0.2, 0.4, 0.6)  # s
 LOAD, VISCOSITY = 1.0, 25.0  # N, Pa s
 STEP, STEPS, EVERY = 1e-4, 6000, 20
 EARLY = (0.08, 0.15)  # s: the lid has come to rest, drainage has not reached the top
@@ -36,11 +38,12 @@ def name():
     return packed(1.2, GRAINS, SOLID)
 
 
-def undrained(modulus, strain=STRAIN, retriangulate=1.0):
+def undrained(modulus, strain=STRAIN, retriangulate=1.0, **grains):
     """(force on the lid before, added stress, added mean pressure, networks)"""
     step = min(1e-5, 1e-5 * math.sqrt(1e8 / modulus))  # sound crosses no pore in a step
     screen = must(liggghts("in.undrained", data=f"post/{name()}.data", bulk=repr(modulus),
-                           strain=strain, steps=2000, dt=step, retriangulate=retriangulate))
+                           strain=strain, steps=2000, dt=step, retriangulate=retriangulate,
+                           **{**HELD, **grains}))
     rows = rows_of(screen)
     first, last = rows[1], rows[-1]
     return first[1], (last[1] - first[1]) / EDGE**2, last[2] - first[2], last[3]
@@ -58,12 +61,12 @@ def permeability():
     return float(words[words.index("permeability") + 1])
 
 
-def consolidation(modulus, before):
+def consolidation(modulus, before, **grains):
     """(times, pressure under the lid, mean pressure), pressures as parts of the load."""
     fluid = f"bulk_modulus {modulus!r}" if math.isfinite(modulus) else "couple_every 1"
     screen = must(liggghts("in.suddenly", data=f"post/{name()}.data", before=before, load=LOAD,
                            viscosity=VISCOSITY, fluid=fluid, steps=STEPS, every=EVERY, dt=STEP,
-                           gamman=2000))
+                           gamman=2000, **{**HELD, **grains}))
     sensors = np.loadtxt(POST / "suddenly.csv", delimiter=",", skiprows=1)
     rows = np.array(rows_of(screen))[1:]
     times, stress = rows[:, 0] * STEP, LOAD / EDGE**2
@@ -115,6 +118,24 @@ def table():
              title="mean pressure, theory (dotted), pressure under the lid (thin)")
     axis.legend(fontsize=7)
     save_figure(figure, FIGURES / "stability_compressible.png")
+    return rows
+
+
+def terzaghi():
+    """Mean pressure of the incompressible consolidation with and without friction, spins held or free."""
+    write_lid()
+    rows = Table("friction", "spins", "drained modulus, Pa",
+                 *(f"mean pressure / load at {time:g} s: run, theory" for time in LATER))
+    conductivity = permeability() / VISCOSITY
+    for friction in (0.0, 0.5):
+        for spins, style in (("free", "nve/sphere"), ("held", "nve")):
+            grains = {"friction": friction, "integrate": style}
+            before, stress, _, _ = undrained(DRY, **grains)
+            times, _, mean = consolidation(math.inf, before, **grains)
+            theory = mean_in_theory(conductivity * stress / STRAIN * times / EDGE**2)
+            rows.row(friction, spins, f"{stress / STRAIN:.3g}",
+                     *(f"{np.interp(time, times, mean):.3f}, {np.interp(time, times, theory):.3f}"
+                       for time in LATER))
     return rows
 
 

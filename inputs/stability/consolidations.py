@@ -14,17 +14,25 @@ GRAVITY = 10.0  # m/s2: under more these few grains change places, each run at i
 INSTANTS = 160
 RUNS = {10: ("staged", "implicit"), 100: ("staged", "implicit"), 1000: ("staged", "implicit"),
         10000: ("implicit",)}
-REFERENCES = {10: ("time_step_check no", 50), 100: ("coupling implicit", 4)}  # parts of STEP
+# grains that are free to spin let water pass in a time that their inertia sets (spins.py), so that runs of
+# two viscosities are not the same in t / viscosity
+SPINS = {"held": (10, 100, 1000, 10000), "free": (10, 100)}
+STYLES = {"held": "nve", "free": "nve/sphere"}
+REFERENCES = {10: ("time_step_check no", 50), 100: ("coupling implicit", 4),
+              1000: ("coupling implicit", 2)}  # parts of STEP
 
 
 @dataclass
 class Consolidation:
-    """Lists at equal intervals from the start."""
+    """Lists at equal intervals from the start. Means are over the interval that ends there: where networks
+    are replaced, pressures jump for some steps, at another instant in each run (jumps.py)."""
     heights: tuple    # mean of the grains', m
     pressures: tuple  # mean of the pores', Pa
     networks: int     # that took the place of another
     energies: tuple   # kinetic, J
     forces: tuple     # vertical, of the fluid on the lower half of the grains, N
+    mean_pressures: tuple  # without a value for the start
+    mean_forces: tuple
     cpu: float        # s
 
 
@@ -35,10 +43,18 @@ def consolidation(data, viscosity, step, words, time, instants=16, **variables):
     assert abs(often * instants * step / time - 1.0) < 1e-9
     screen = must(liggghts("in.consolidation", data=data, viscosity=viscosity, dt=repr(step),
                            steps=often * instants, often=often, words=words, **variables))
-    heights, pressures, networks, energies, forces = zip(
-        *(row[1:] for row in rows_of(screen, columns=6)))
-    return Consolidation(heights, pressures, round(networks[-1]), energies, forces,
+    heights, pressures, networks, energies, forces, *sums = zip(
+        *(row[1:] for row in rows_of(screen, columns=8)))
+    means = [trapezoidal(*pair, often) for pair in zip(sums, (pressures, forces))]
+    return Consolidation(heights, pressures, round(networks[-1]), energies, forces, *means,
                          os.times().children_user - before)
+
+
+def trapezoidal(sums, values, often):
+    """Means over intervals of `often` steps, with half of the value at each of their ends: LIGGGHTS' count
+    the end and not the beginning."""
+    return tuple(mean + 0.5 * (first - last) / often
+                 for mean, first, last in zip(sums[1:], values, values[1:]))
 
 
 def weight(data):
@@ -61,24 +77,27 @@ def table():
     data = sample("dense", CELLS)
     limit, _ = printed(data, 1.0)
     load = weight(data)
-    rows = Table("R", "coupling", "steps", "new networks", "pressure at the end / largest",
+    rows = Table("spins", "R", "coupling", "steps", "new networks", "pressure at the end / largest",
                  "largest kinetic energy / work of the weight", "kinetic energy at the end / largest",
                  "settlement off", "force of the fluid off")
-    reference = None
-    for ratio, couplings in RUNS.items():
-        viscosity, time = ratio * limit / STEP, ratio * STEPS * STEP
-        if ratio in REFERENCES:
-            words, parts = REFERENCES[ratio]
-            reference = consolidation(data, viscosity, STEP / parts, words, time, INSTANTS,
-                                      gravity=GRAVITY)
-        for coupling in couplings:
-            run = consolidation(data, viscosity, STEP, f"coupling {coupling}", time, INSTANTS,
-                                gravity=GRAVITY)
-            settled = run.heights[0] - run.heights[-1]
-            rows.row(ratio, coupling, ratio * STEPS, run.networks,
-                     percent(run.pressures[-1] / max(run.pressures), 1),
-                     f"{max(run.energies) / (load * settled):.1e}",
-                     f"{run.energies[-1] / max(run.energies):.1e}",
-                     percent(largest(run.heights, reference.heights) / settled),
-                     percent(largest(run.forces[1:], reference.forces[1:]) / load))
+    for spins, ratios in SPINS.items():
+        reference = None
+        for ratio in ratios:
+            viscosity, time = ratio * limit / STEP, ratio * STEPS * STEP
+
+            def run(words, parts=1):
+                return consolidation(data, viscosity, STEP / parts, words, time, INSTANTS,
+                                     gravity=GRAVITY, integrate=STYLES[spins])
+
+            if ratio in REFERENCES:
+                reference = run(*REFERENCES[ratio])
+            for coupling in RUNS[ratio]:
+                one = run(f"coupling {coupling}")
+                settled = one.heights[0] - one.heights[-1]
+                rows.row(spins, ratio, coupling, ratio * STEPS, one.networks,
+                         percent(one.pressures[-1] / max(one.pressures), 1),
+                         f"{max(one.energies) / (load * settled):.1e}",
+                         f"{one.energies[-1] / max(one.energies):.1e}",
+                         percent(largest(one.heights, reference.heights) / settled),
+                         percent(largest(one.mean_forces, reference.mean_forces) / load))
     return rows

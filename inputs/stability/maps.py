@@ -12,12 +12,12 @@ sys.path.insert(0, str(SCENE.parent / "common"))
 from plotting import plt, save_figure  # noqa: E402
 
 THICK = 1e4  # Pa s: contacts play no part
-SIZE_RATIOS = {"dense": {1.2: 0.60, 2: 0.605, 3: 0.61, 5: 0.63, 10: 0.66, 20: 0.68},
-               "loose": {ratio: 0.45 for ratio in (1.2, 2, 3, 5, 10, 20)}}  # share of the grains' volume
+SIZE_RATIOS = {"dense": {1.2: 0.60, 2: 0.605, 3: 0.61, 5: 0.63, 10: 0.66, 20: 0.68, 50: 0.69},
+               "loose": {ratio: 0.45 for ratio in (1.2, 2, 3, 5, 10, 20, 50)}}  # share of the grains' volume
 SIZE_GRAINS = 500
 MEASURED_RATIOS = (1.2, 3, 10)
-COUNTS = [125, 250, 500, 1000, 2000, 5000]
-MEASURED_COUNTS = (125, 1000, 5000)
+COUNTS = [125, 250, 500, 1000, 2000]
+MEASURED_COUNTS = (125, 1000)
 LID_MASSES = [10.0**k for k in range(-4, 2)]  # kg
 LOOKED_AT = 300  # grains whose V is found
 

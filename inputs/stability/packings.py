@@ -90,6 +90,14 @@ def rested(ratio, count, solid, steps=100000):
     return label
 
 
+def contact_limit(name, stiffness=STIFFNESS):
+    """s; of the contacts that there are, or of the smallest grain between two others: there may be grains
+    without contacts, which meet others on their way."""
+    report, _ = time_step(POST / f"{name}.csv", "--spheres", 1, "--contact-stiffness", stiffness)
+    smallest = DENSITY * 4 / 3 * math.pi * read_csv(POST / f"{name}.csv")[:, 3].min()**3
+    return min(report["contact_limit"], math.sqrt(2 * smallest / stiffness))
+
+
 def overlaps(grains):
     """(contacts of a grain, largest overlap of two as a part of the smaller radius)"""
     contacts, largest = 0, 0.0

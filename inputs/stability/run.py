@@ -14,25 +14,25 @@ import compressible
 import consolidations
 import convergence
 import costs
-import growth_rate
+import jumps
 import limits
+import long_lids
 import long_steps
 import maps
 import regions
 import speed
+import spins
 import stiffness
 import thesis
 from tables import write_page
 
-TABLES = {"limits": limits.table, "maps": maps.table,
-          "stiffness": stiffness.table, "regions": regions.table,
-          "thesis": thesis.table, "compressible": compressible.table,
-          "conservation": compressible.conservation, "beyond": beyond.table,
-          "accuracy": accuracy.table, "convergence": convergence.table,
-          "consolidations": consolidations.table, "speed": speed.table, "costs": costs.table,
-          "growth": growth_rate.table, "long_steps": long_steps.table,
-          "floating": long_steps.floating, "shaken": long_steps.shaken,
-          "long_lids": long_steps.lids}
+TABLES = {"limits": limits.table, "beyond": beyond.table, "long_steps": long_steps.table,
+          "longer": long_steps.longer, "long_lids": long_lids.table, "convergence": convergence.table,
+          "accuracy": accuracy.table, "consolidations": consolidations.table, "spins": spins.table,
+          "terzaghi": compressible.terzaghi, "jumps": jumps.table, "speed": speed.table,
+          "costs": costs.table, "maps": maps.table, "stiffness": stiffness.table,
+          "regions": regions.table, "thesis": thesis.table, "compressible": compressible.table,
+          "conservation": compressible.conservation}
 
 
 def main(words):

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures 4.5 to 4.12 of Catalano 2012 with this method: doc/figures/stability_thesis.png and a table."""
+"""Figures 4.5 to 4.12 of Catalano 2012: doc/figures/stability_thesis.png and a table. Volume rates are the
+papers' E (`volume_rates geometric`) but for what `pfv time-step` finds, which takes S^T."""
+import csv
+import subprocess
 import sys
 
 import numpy as np
 
 from bisection import calms_down, largest_stable
-from packings import EDGE, POST, STIFFNESS, packed, read_csv, time_step, write_csv
-from samples import SCENE, growth
+from packings import (DRAINED, EDGE, POST, STIFFNESS, packed, read_csv, time_step, write_csv)
+from samples import BIN, SCENE, growth, printed
 from tables import FIGURES, Table
 
 sys.path.insert(0, str(SCENE.parent / "common"))
@@ -16,7 +19,10 @@ GRAINS = 500
 RATIOS = [1.02, 3, 10]
 DENSE = {1.02: 0.60, 3: 0.61, 10: 0.66}  # volume of the grains over that of the box; jammed
 LOOSE = 0.45
-LAWS = {"hydraulic_radius": "papers' law", "open_throat": "default law"}
+GEOMETRIC = "time_step_check no volume_rates geometric"
+# conductance law, whether with the papers' E
+METHODS = {"papers' law and E": ("hydraulic_radius", True), "papers' law, S^T": ("hydraulic_radius", False),
+           "default law and E": ("open_throat", True), "default law, S^T": ("open_throat", False)}
 SIZES = [10.0**k for k in np.arange(-5, 0.01, 0.25)]  # of one grain, as parts of the mean
 SCALES = [0.25, 0.5, 1.0, 2.0, 4.0]
 STEPS_420 = [10.0**k for k in np.arange(-1.2, 1.61, 0.1)]  # of eq. 4.20
@@ -36,14 +42,34 @@ def central(grains):
     return 1 + int(np.linalg.norm(grains[:, :3] - 0.5 * EDGE, axis=1).argmin())
 
 
+def papers_matrix(name, chosen, law="hydraulic_radius", edge=EDGE):
+    """V* (m) of one grain with the papers' E: the force on it while it moves alone, of unit viscosity."""
+    grains = read_csv(POST / f"{name}.csv").tolist()
+    columns = []
+    for axis in range(3):
+        motion = ["1" if k == axis else "0" for k in range(3)]
+        (POST / "moving.csv").write_text("id,x,y,z,radius,vx,vy,vz\n" + "".join(
+            ",".join([str(n), *map(repr, grain), *(motion if n == chosen else "000")]) + "\n"
+            for n, grain in enumerate(grains, 1)))
+        call = [str(BIN / "pfv"), "solve", "--packing", str(POST / "moving.csv"), "--box",
+                *["0", repr(edge)] * 3, *DRAINED, "--viscosity", "1", "--conductance", law,
+                "--volume-rates", "geometric", "--forces", str(POST / "moving_forces.csv")]
+        done = subprocess.run(call, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise SystemExit("stability: " + done.stderr.strip())
+        with open(POST / "moving_forces.csv", newline="") as file:
+            force = next(row for row in csv.DictReader(file) if int(row["id"]) == chosen)
+        columns.append([-float(force["f" + name]) for name in "xyz"])
+    return np.array(columns).T
+
+
 def homothety(figure, rows):
     grains = read_csv(POST / f"{dense()}.csv")
     chosen = central(grains)
     found = []
     for scale in SCALES:
         write_csv(POST / "scaled.csv", scale * grains)
-        _, matrices = time_step(POST / "scaled.csv", "--ids", chosen, edge=scale * EDGE)
-        found.append(np.diag(matrices[chosen]))
+        found.append(np.diag(papers_matrix("scaled", chosen, edge=scale * EDGE)))
     found = np.array(found)
     size = 2 * grains[chosen - 1, 3]
     for axis, name in enumerate("xyz"):
@@ -67,14 +93,15 @@ def one_size(of_mass, of_size, rows):
     """One grain shrinks, all others keep their size."""
     grains = read_csv(POST / f"{dense()}.csv")
     chosen, mean = central(grains), 2 * grains[:, 3].mean()
-    for law, name in LAWS.items():
+    for name, (law, papers) in METHODS.items():
         values = []
         for size in SIZES:
             changed = grains.copy()
             changed[chosen - 1, 3] = 0.5 * size * mean
             write_csv(POST / "shrunk.csv", changed)
-            _, matrices = time_step(POST / "shrunk.csv", "--ids", chosen, law=law)
-            values.append(np.trace(matrices[chosen]) / 3 / mean)
+            matrix = (papers_matrix("shrunk", chosen, law) if papers else
+                      time_step(POST / "shrunk.csv", "--ids", chosen, law=law)[1][chosen])
+            values.append(np.trace(matrix) / 3 / mean)
         per_mass = [value / size**3 for value, size in zip(values, SIZES)]
         of_mass.loglog(SIZES, [value / per_mass[-1] for value in per_mass], "o-", ms=3, label=name)
         of_size.loglog(SIZES, values, "o-", ms=3, label=f"V*/d_av, {name}")
@@ -88,9 +115,9 @@ def one_size(of_mass, of_size, rows):
         rows.row("4.6", f"V*/M, largest over smallest, d/d_av from 0.1 to 1, {name}",
                  "a narrow range", f"{max(spread) / min(spread):.1f}")
     scale = values[-1]
-    for power in (1, 2, 3):
+    for power in (1, 2, 3, 4):
         of_size.loglog(SIZES, [scale * size**power for size in SIZES], ":", lw=1, label=f"d^{power}")
-    of_size.set(xlabel="d / d_av", ylim=(1e-9 * scale, 10 * scale), title="4.7: one grain shrinks")
+    of_size.set(xlabel="d / d_av", ylim=(1e-12 * scale, 10 * scale), title="4.7: one grain shrinks")
     of_mass.set(xlabel="d / d_av", title="4.6: V*/M, one grain shrinks (1 at d = d_av)")
     of_size.legend(fontsize=7)
     of_mass.legend(fontsize=7)
@@ -153,14 +180,14 @@ def instability(figure, reports, rows):
         for ratio in RATIOS:
             report = reports[kind, ratio]
             data = f"post/{make(ratio)}.data"
-            formula, limit = report["formula"]["time_step"], report["coupling_limit"]
+            formula = report["formula"]["time_step"]
+            limit = printed(data, THICK, "volume_rates geometric")[0] * THICK
             steps = [part for part in STEPS_420 if part * formula < 4 * limit]
-            energies = [growth(data, THICK, part * formula / THICK, 400, "time_step_check no")
-                        for part in steps]
+            energies = [growth(data, THICK, part * formula / THICK, 400, GEOMETRIC) for part in steps]
             line, = figure.loglog(steps, [min(energy, 1e12) for energy in energies],
                                   "o-" if kind == "dense" else "s--", ms=3, label=f"{kind}, {ratio:g}")
             figure.axvline(limit / formula, color=line.get_color(), lw=0.7, ls=":")
-            found = largest_stable(calms_down(data, THICK), limit / THICK, 0.9, 1.15, 0.02) * THICK
+            found = largest_stable(calms_down(data, THICK, GEOMETRIC), limit / THICK, 0.9, 1.15, 0.02) * THICK
             of_formula[ratio] = found / formula
             of_matrix[ratio] = found / report["viscous"]["time_step"]
         rows.row("4.9", f"unstable from, in units of eq. 4.20, {kind}", "0.95",
@@ -178,14 +205,15 @@ def both_limits(figure, rows):
     name = dense()
     report, _ = time_step(POST / f"{name}.csv", "--contact-stiffness", STIFFNESS)
     contact = report["contact"]["time_step"]
+    coupling = printed(f"post/{name}.data", 1.0, "volume_rates geometric")[0]
     measured, taken = [], []
     for viscosity in VISCOSITIES:
-        true = min(report["coupling_limit"] / viscosity, report["contact_limit"])
-        measured.append(largest_stable(calms_down(f"post/{name}.data", viscosity), true, 0.4, 1.6,
-                                       0.01))
+        true = min(coupling / viscosity, report["contact_limit"])
+        measured.append(largest_stable(calms_down(f"post/{name}.data", viscosity, GEOMETRIC), true, 0.4,
+                                       1.6, 0.01))
         taken.append(0.8 * min(contact, report["formula"]["time_step"] / viscosity))
     figure.loglog(VISCOSITIES, taken, "k-", label="eq. 4.22, 0.8 min(2.14, 4.20)")
-    figure.loglog(VISCOSITIES, [report["coupling_limit"] / mu for mu in VISCOSITIES], "--",
+    figure.loglog(VISCOSITIES, [coupling / mu for mu in VISCOSITIES], "--",
                   label="printed limit of the coupling")
     figure.axhline(report["contact_limit"], ls=":", label="contacts, 2/omega_max")
     figure.loglog(VISCOSITIES, measured, "o", label="measured in LIGGGHTS")
