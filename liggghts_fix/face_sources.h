@@ -73,6 +73,11 @@ class PfvFaceSources : protected Pointers {
   std::array<double, 6> begun_{};  ///< force along the face's axis that this rank's module held, N
   std::array<double, 6> positions_{};
   std::array<double, 6> velocities_{};
+  struct Gliding {
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), pivot = Eigen::Vector3d::Zero();
+    double spin = 0.0;
+  };
+  std::array<Gliding, 6> gliding_{};
 };
 
 }  // namespace LAMMPS_NS

@@ -65,6 +65,34 @@ class Faces(CoupledTest):
             self.assertLess(abs(row["flow[3]"]), 1e-9)
             self.assertLess(row["flow[4]"], 1e-9)
 
+    def top_forces(self, move, words=""):
+        """Forces on the upper layer of grains at rest below a lid that moves in its own plane."""
+        self.liggghts(FROZEN + LID + f"fix glide all move/mesh mesh lid {move}\n" +
+                      "fix flow all pfv viscosity 0.01 couple_every 1 " +
+                      faces(zlo="no_slip pressure 0", zhi=f"mesh lid {words} sealed") + "\n" +
+                      dump("d.dump") + "run 2\n")
+        rows = read_dump(self.folder / "d.dump")[2]
+        return {n: (row[:3], row[7:10]) for n, row in rows.items() if row[2] > 0.8 * EDGE}
+
+    def test_a_lid_that_slides_takes_the_fluid_along(self):
+        """In a closed box the fluid piles up before the grains in front: they are pushed back."""
+        along, twice = (sum(force[0] for _, force in self.top_forces(f"linear {v} 0 0").values())
+                        for v in (0.1, 0.2))
+        self.assertLess(along, 0.0)
+        self.assertAlmostEqual(twice / along, 2.0, delta=1e-6)
+        free = self.top_forces("linear 0.1 0 0", "symmetry")
+        self.assertEqual({tuple(force) for _, force in free.values()}, {(0.0, 0.0, 0.0)})
+
+    def test_a_lid_that_turns_takes_the_fluid_round(self):
+        def moment(period):
+            turn = f"rotate origin {EDGE / 2} {EDGE / 2} 0 axis 0 0 1 period {period}"
+            return sum((x[0] - EDGE / 2) * force[1] - (x[1] - EDGE / 2) * force[0]
+                       for x, force in self.top_forces(turn).values())
+
+        self.assertNotEqual(moment(1.0), 0.0)
+        self.assertAlmostEqual(moment(1.0) / moment(-1.0), -1.0, delta=1e-3)
+        self.assertAlmostEqual(moment(0.5) / moment(1.0), 2.0, delta=1e-3)
+
     def test_flow_every_n_steps_takes_the_displacement_of_the_mesh(self):
         """A lid that swings as A sin(2 pi t / T): its velocity changes between flow steps, and what
         leaves is what it has displaced since the last one. LIGGGHTS moves it in each step by the
