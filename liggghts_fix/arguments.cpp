@@ -312,6 +312,7 @@ void parse_keyword(Words& words, Once& once, PfvSettings& settings) {
   else if (keyword == "coupling") settings.coupling = words.coupling();
   else if (keyword == "time_step_check") settings.time_step_check = words.yes_or_no();
   else if (keyword == "shear_viscous") settings.options.shear_viscous = words.yes_or_no();
+  else if (keyword == "torques") settings.options.torques = words.yes_or_no();
   else if (keyword == "volume_rates")
     settings.options.volume_rates = pfv::volume_rates_named(words.word("the name"));
   else if (keyword == "conductance")
@@ -334,7 +335,7 @@ void parse_keyword(Words& words, Once& once, PfvSettings& settings) {
                           "'; there are viscosity, density, bulk_modulus, buoyancy, face, patch, "
                           "region, point, pressure_profile, retriangulate, rebuild_lag, "
                           "couple_every, coupling, "
-                          "time_step_check, conductance, volume_rates, shear_viscous, solver, tolerance, "
+                          "time_step_check, conductance, volume_rates, torques, shear_viscous, solver, tolerance, "
                           "precision, threads, output, profile, flux_profile, sensors and "
                           "culprits");
 }

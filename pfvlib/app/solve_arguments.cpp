@@ -146,6 +146,7 @@ Options options_of(const SolveArguments& arguments) {
     options.volume_rates = volume_rates_named(*arguments.volume_rates);
   else if (options.partition == Partition::yade)
     options.volume_rates = VolumeRates::geometric;  // YADE's
+  options.torques = arguments.torques;
   options.solver = solver_named(arguments.solver);
   options.ordering = ordering_named(arguments.ordering);
   options.precision = precision_named(arguments.precision);
@@ -249,6 +250,9 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
                      "how moving grains change the pores' volumes: by the transpose of the forces,\n"
                      "or by the papers' geometry (default reciprocal; with --partition yade geometric)")
       ->option_text("reciprocal|geometric")->group(group);
+  command.add_flag("--torques", arguments.torques,
+                   "forces act where they lie, and spins (omegax, omegay, omegaz) move fluid")
+      ->group(group);
   command.add_option("--solver", arguments.solver,
                      "linear solver (default " + arguments.solver + ": cholmod)")
       ->option_text("auto|cholmod|klu2|mumps|cg|gauss_seidel")->group(group);

@@ -23,6 +23,7 @@ struct SolveArguments {
   std::string wall = "no_slip", viscosity = "1e-3", density = "1000", threads = "1";
   std::string partition = name_of(Options{}.partition), solver = name_of(Options{}.solver),
               ordering = name_of(Options{}.ordering), precision = name_of(Options{}.precision);
+  bool torques = false;
   std::optional<std::string> conductance, volume_rates, tolerance, bulk_modulus, time_step, repeat;
   std::optional<std::string> forces, report, vtk, culprits;
 };

@@ -134,8 +134,10 @@ Eigen::ArrayXd braking_of_spins(const std::string& bed) {
   constexpr double pi = 3.14159265358979323846;
   pfv::PackingArrays packing = data_packing(bed);
   packing.velocities = packing.angular_velocities = Eigen::Matrix3Xd::Zero(3, packing.radii.size());
+  pfv::Options options;
+  options.torques = true;
   pfv::Flow flow(pressure_box(pfv::Face::zlo, 0.0, pfv::Face::zhi, 0.0, pfv::Wall::symmetry),
-                 viscosity_one());
+                 viscosity_one(), options);
   Eigen::ArrayXd result = Eigen::ArrayXd::Zero(packing.radii.size());
   for (Eigen::Index entry = 0; entry < packing.angular_velocities.size(); ++entry) {
     packing.angular_velocities(entry) = 1.0;

@@ -2,7 +2,7 @@
 """Grains that come, go, grow, and leave the flow box."""
 import unittest
 
-from coupled import EDGE, FLOW, CoupledTest, dump, forces, largest_difference, packing
+from coupled import EDGE, FLOW, CoupledTest, dump, faces, forces, largest_difference, packing
 from coupled import read_dump, read_thermo, write_data
 from plates import square, write_plate
 
@@ -108,6 +108,18 @@ class Grains(CoupledTest):
         self.liggghts(HEAD + "group late id 999\n" + FIX.replace("all", "late", 1) + THERMO +
                       "run 3\n")
         self.assertEqual(self.log()[-1]["flow[8]"], 0)
+
+    def test_grains_that_go_along_with_the_fluid(self):
+        """Plug flow: no pressure, no force, and nothing to stop the run at a new network."""
+        speed = 0.01
+        grains = packing(4)
+        write_data(self.folder, grains, {grain[0]: [0, 0, speed] for grain in grains})
+        flow = faces(zlo=f"flux {speed * EDGE**2!r}", zhi="pressure 0")
+        self.liggghts("include in.packing\nfix flow all pfv viscosity 1 retriangulate 1e-6 " + flow +
+                      "\n" + dump("d.dump") + "run 20\n")
+        for rows in read_dump(self.folder / "d.dump").values():
+            # 12 mu v L = 0.012 N would hold grains at rest
+            self.assertLess(max(abs(f) for force in forces(rows).values() for f in force), 1e-14)
 
 
 if __name__ == "__main__":

@@ -79,6 +79,12 @@ class Multisphere(CoupledTest):
         # 1.2e-11; 4.4e-5 with the parts of the union as they are, 2.3e-3 with whole spheres
         self.assertLess(turning, 1e-10)
 
+    def test_behind_the_flow_the_body_gets_its_lift_from_the_first_half_step_on(self):
+        """Before it, each run begins with half a step of weight alone: g dt/2 = 5e-5 m/s."""
+        flow = f"fix flow all pfv viscosity 1e-3 {WIDE}\n"
+        script = self.head().replace("fix move", GRAVITY + flow + "fix move") + THERMO + "run 0\nrun 1\n"
+        self.assertLess(abs(read_thermo(self.liggghts(script))[-1]["speed"]), 1e-6)
+
     def test_without_gravity_there_is_no_lift(self):
         script = self.head() + f"fix flow all pfv viscosity 1e-3 {WIDE}\n" + THERMO + "run 0\n"
         self.assertEqual(read_thermo(self.liggghts(script))[-1]["lift"], 0.0)
@@ -112,6 +118,11 @@ class Multisphere(CoupledTest):
     def test_a_body_that_is_held_has_no_limit(self):
         script = self.head() + VISCOUS + "fix hold all freeze\n" + THERMO + "run 0\n"
         self.assertEqual(read_thermo(self.liggghts(script))[-1]["flow[6]"], math.inf)
+
+    def test_a_run_that_goes_on_keeps_its_network(self):
+        script = self.head() + GRAVITY + f"fix flow all pfv viscosity 1e-3 {WIDE}\n"
+        screen = self.liggghts(script + "thermo_style custom step f_flow[5]\nrun 5\nrun 0\nrun 5\n")
+        self.assertEqual([row["flow[5]"] for row in read_thermo(screen) if "flow[5]" in row], [0] * 5)
 
     # couplings
 

@@ -144,8 +144,10 @@ Case case_number(std::uint64_t seed, std::uint64_t number) {
   }
   if (random() < 0.2 && !c.box.periodic[0]) c.box[pfv::Face::xhi].sliding = {0.0, 1.0, -2.0};
   if (random() < 0.1 && !c.box.periodic[1]) c.box[pfv::Face::ylo].spin = 1.0;
+  c.options.torques = random() < 0.5;
   if (random() < 0.05 || c.options.partition == pfv::Partition::yade) {
     c.options.volume_rates = pfv::VolumeRates::geometric;
+    c.options.torques = false;
     c.staged = c.implicit = false;
   }
   return c;

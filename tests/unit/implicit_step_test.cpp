@@ -81,11 +81,16 @@ struct Sample {
   pfv::Flow flow;
 
   explicit Sample(double viscosity = 1.0, pfv::Box box = drained(), double bulk_modulus = 0.0)
-      : flow(std::move(box), fluid(viscosity, bulk_modulus)) {
+      : flow(std::move(box), fluid(viscosity, bulk_modulus), with_torques()) {
     Random random(1);
     packing.velocities.resize(3, masses.size());
     packing.angular_velocities = others;
     for (int k = 0; k < masses.size(); ++k) packing.velocities.col(k) = 1e-9 * random.in_cube();
+  }
+  static pfv::Options with_torques() {
+    pfv::Options options;
+    options.torques = true;
+    return options;
   }
   static pfv::Box drained() {
     return pressure_box(Face::zlo, 0.0, Face::zhi, 0.0, pfv::Wall::symmetry);
@@ -192,7 +197,7 @@ TEST(ImplicitStep, PressuresAreThoseOfVelocitiesBetweenThoseTakenAndThoseHandedB
         EXPECT_LT(std::abs(report.mass_error), 1e-10);
         EXPECT_LT(report.force_balance_error, 1e-12);
         EXPECT_LT(report.residual, 1e-10);
-        pfv::Flow steady(box, Sample::fluid(1.0, bulk_modulus));
+        pfv::Flow steady(box, Sample::fluid(1.0, bulk_modulus), Sample::with_torques());
         steady.set_state(before);
         steady.evaluate(run.packing.view(), dt);
         const Eigen::VectorXd p = run.flow.pore_pressures();
@@ -234,7 +239,7 @@ TEST(ImplicitStep, AFrozenGrainKeepsItsVelocityInTheContinuity) {
   run.masses.head(40).setConstant(infinite);
   const double dt = 1000.0 * run.limit();
   run.take(run.next_velocities(run.implicit(dt), dt, theta));
-  pfv::Flow steady(Sample::drained(), viscosity_one());
+  pfv::Flow steady(Sample::drained(), viscosity_one(), Sample::with_torques());
   steady.evaluate(run.packing.view());
   EXPECT_LT((steady.pore_pressures() - run.flow.pore_pressures()).norm(),
             1e-9 * run.flow.pore_pressures().norm());

@@ -37,6 +37,12 @@ pfv::Motion rotation(const Stages& s, const Eigen::Vector3d& spin, const Eigen::
   return motion;
 }
 
+pfv::Options with_torques() {
+  pfv::Options options;
+  options.torques = true;
+  return options;
+}
+
 double mean_volume(const Stages& s) { return 1.0 / s.network.pores(); }
 
 TEST(Reciprocity, WhatMovesAsOneRigidBodyMovesNoFluid) {
@@ -121,10 +127,10 @@ TEST(Reciprocity, DiscsTurnNoSphereInAnEvenPressure) {
 // face alone has a pressure.
 TEST(Reciprocity, FluxOfASphereThatMovesAloneIsItsForceUnderAPressureThere) {
   auto packing = data_packing("packing_100.csv");
-  pfv::Flow still(upward_box(pfv::Wall::no_slip), viscosity_one());
+  pfv::Flow still(upward_box(pfv::Wall::no_slip), viscosity_one(), with_torques());
   const pfv::Forces forces = still.evaluate(packing.view());
   pfv::Flow moving(pressure_box(pfv::Face::zlo, 0.0, pfv::Face::zhi, 0.0, pfv::Wall::no_slip),
-                   viscosity_one());
+                   viscosity_one(), with_torques());
   const auto flux = [&] { return moving.faces()[static_cast<int>(pfv::Face::zlo)].flux; };
   for (const int k : {3, 40, 77})
     for (int axis = 0; axis < 3; ++axis) {
@@ -145,7 +151,7 @@ TEST(Reciprocity, FluxOfASphereThatMovesAloneIsItsForceUnderAPressureThere) {
 /// S G^-1 S^T: minus the forces and torques that velocities and spins of each sphere cause, column by column.
 Eigen::MatrixXd resistance(pfv::PackingArrays packing, const pfv::Box& box) {
   const auto n = static_cast<int>(packing.radii.size());
-  pfv::Flow flow(box, viscosity_one());
+  pfv::Flow flow(box, viscosity_one(), with_torques());
   packing.velocities = packing.angular_velocities = Eigen::Matrix3Xd::Zero(3, n);
   Eigen::MatrixXd matrix(6 * n, 6 * n);
   for (int c = 0; c < 6 * n; ++c) {
@@ -216,13 +222,37 @@ TEST(Reciprocity, ThreadsChangeNoByteOfRates) {
   packing.velocities.resize(3, packing.radii.size());
   for (int k = 0; k < packing.radii.size(); ++k) packing.velocities.col(k) = random.in_cube();
   packing.angular_velocities = packing.velocities;
-  pfv::Options shared;
+  pfv::Options shared = with_torques();
   shared.threads = 3;
   const pfv::Box box = upward_box(pfv::Wall::no_slip);
-  pfv::Flow one(box, viscosity_one()), three(box, viscosity_one(), shared);
+  pfv::Flow one(box, viscosity_one(), with_torques()), three(box, viscosity_one(), shared);
   EXPECT_TRUE(one.evaluate(packing.view()).total == three.evaluate(packing.view()).total);
   EXPECT_TRUE(one.forces().torque == three.forces().torque);
   EXPECT_EQ(one.report().volume_rate_sum, three.report().volume_rate_sum);
+}
+
+// Without torques the spins are not asked for, and the resistance of the velocities alone is as it should be.
+TEST(Reciprocity, WithoutTorquesSpinsMoveNothingAndNoVelocityIsFed) {
+  auto packing = data_packing("packing_100.csv");
+  const auto n = static_cast<int>(packing.radii.size());
+  const pfv::Box box =
+      pressure_box(pfv::Face::zlo, 0.0, pfv::Face::zhi, 0.0, pfv::Wall::no_slip);
+  packing.velocities = packing.angular_velocities = Eigen::Matrix3Xd::Zero(3, n);
+  packing.angular_velocities.setOnes();
+  pfv::Flow flow(box, viscosity_one());
+  EXPECT_EQ(flow.evaluate(packing.view()).total.norm(), 0.0);
+  EXPECT_EQ(flow.forces().torque.cols(), 0);
+  EXPECT_EQ(flow.report().counts.volume_rate, 0);
+  Eigen::MatrixXd r(3 * n, 3 * n);
+  for (int c = 0; c < 3 * n; ++c) {
+    packing.velocities(c % 3, c / 3) = 1.0;
+    r.col(c) = -flow.evaluate(packing.view()).total.reshaped();
+    packing.velocities(c % 3, c / 3) = 0.0;
+  }
+  EXPECT_LT((r - r.transpose()).norm(), 1e-12 * r.norm());
+  const Eigen::VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (r + r.transpose())).eigenvalues();
+  EXPECT_GT(eigenvalues.minCoeff(), -1e-13 * eigenvalues.maxCoeff());
 }
 
 TEST(GeometricRates, ActAtTheCentresAndRefuseLongSteps) {

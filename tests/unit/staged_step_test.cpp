@@ -64,7 +64,12 @@ struct Braked {
   Eigen::Matrix3Xd none;
   Flow flow;
 
-  Braked() : flow(drained(), Fluid{}) {
+  static Options with_torques() {
+    Options options;
+    options.torques = true;
+    return options;
+  }
+  Braked() : flow(drained(), Fluid{}, with_torques()) {
     masses = 2600.0 * 4.0 / 3.0 * 3.14159265358979 * packing.radii.array().cube();
     none = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
     std::srand(7);
@@ -141,7 +146,7 @@ TEST(StagedStep, OverlapsByMostOfTheRadiiAreBraked) {
   for (const double ratio : {23.0, 1000.0}) {
     Overlapping grains;
     Flow flow(::support::pressure_box(Face::zlo, 0.0, Face::zhi, 0.0, Wall::no_slip),
-              ::support::viscosity_one());
+              ::support::viscosity_one(), Braked::with_torques());
     Eigen::Matrix3Xd& v = grains.packing.velocities;
     v = Eigen::Matrix3Xd::Zero(3, grains.masses.size());
     v.row(2) = -1e-9 * grains.packing.positions.row(2);

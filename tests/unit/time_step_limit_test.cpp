@@ -12,11 +12,17 @@ namespace {
 
 using namespace support;
 
+pfv::Options with_torques() {
+  pfv::Options options;
+  options.torques = true;
+  return options;
+}
+
 struct Sample {
   pfv::PackingArrays packing = data_packing("packing_100.csv");
   Eigen::VectorXd masses = 2600.0 * 4.0 / 3.0 * pi * packing.radii.array().cube();
   pfv::Flow flow{pressure_box(pfv::Face::zlo, 0.0, pfv::Face::zhi, 0.0, pfv::Wall::symmetry),
-                 viscosity_one()};
+                 viscosity_one(), with_torques()};
 
   Eigen::VectorXd inertias = 0.4 * masses.array() * packing.radii.array().square();
 
@@ -82,7 +88,7 @@ TEST(TimeStepLimit, GoesWithTheMassesAndWithOneOverTheViscosity) {
   EXPECT_NEAR(sample.flow.time_step_limit(4.0 * sample.masses) / limit, 4.0, 1e-12);
   pfv::Fluid thick = viscosity_one();
   thick.viscosity = 8.0;
-  pfv::Flow flow(sample.flow.box(), thick);
+  pfv::Flow flow(sample.flow.box(), thick, with_torques());
   flow.evaluate(sample.packing.view());
   EXPECT_NEAR(flow.time_step_limit(sample.masses) * 8.0 / limit, 1.0, 1e-12);
 }

@@ -188,14 +188,14 @@ void FlowData::set_motion(const Packing& packing) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     auto own = motion.col(static_cast<Eigen::Index>(i));
     if (packing.velocities.cols() > 0) own.head<3>() = packing.velocities.col(columns[i]);
-    if (packing.angular_velocities.cols() > 0)
+    if (options.torques && packing.angular_velocities.cols() > 0)
       own.tail<3>() = packing.angular_velocities.col(columns[i]);
   }
   set_faces(motion, box, built->network.origin);
 }
 
 void FlowData::update_rates(const Packing& packing) {
-  moving = !at_rest(packing, box);
+  moving = !at_rest(packing, box, options.torques);
   refuse_undetermined(moving);
   set_motion(packing);
   if (moving)
@@ -263,7 +263,7 @@ const Loads& FlowData::gradient_loads() {
     kept = {box.pressure_gradient,
             gradient_forces(built->network, built->vertices, built->throats, built->viscous_shares,
                             built->grains.spheres.size(),
-                            {true, true, options.volume_rates == VolumeRates::reciprocal},
+                            {true, true, options.torques},
                             box.pressure_gradient)};
   return kept->second;
 }
@@ -283,7 +283,7 @@ void FlowData::compute_forces(const Packing& packing) {
   const bool driven = !box.pressure_gradient.isZero(0.0);
   if (driven) loads += gradient_loads();
   spread(loads.topRows<3>(), forces.total);
-  if (options.volume_rates == VolumeRates::reciprocal) spread(loads.bottomRows<3>(), forces.torque);
+  if (options.torques) spread(loads.bottomRows<3>(), forces.torque);
   if (options.split_forces) {
     Loads of_pressure;
     multiply(*built->pressure_force_matrix, relative_pressures, *team, of_pressure);

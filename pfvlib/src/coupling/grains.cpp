@@ -145,11 +145,11 @@ double displaced_volume(const Packing& packing, Eigen::Index column) {
   return 4.0 / 3.0 * pi * r * r * r;
 }
 
-bool at_rest(const Packing& packing, const Box& box) {
+bool at_rest(const Packing& packing, const Box& box, bool spins) {
   for (const FaceCondition& face : box.faces)
     if (face.velocity != 0.0 || face.spin != 0.0 || !face.sliding.isZero(0.0)) return false;
   return (packing.velocities.array() == 0.0).all() &&
-         (packing.angular_velocities.array() == 0.0).all();
+         (!spins || (packing.angular_velocities.array() == 0.0).all());
 }
 
 }  // namespace pfv

@@ -30,6 +30,6 @@ void gather_velocities(const Packing& packing, const std::vector<int>& columns,
                        Eigen::Matrix3Xd& velocities);
 /// m³: what the lift of a sphere counts.
 double displaced_volume(const Packing& packing, Eigen::Index column);
-bool at_rest(const Packing& packing, const Box& box);
+bool at_rest(const Packing& packing, const Box& box, bool spins = false);
 
 }  // namespace pfv

@@ -61,7 +61,7 @@ void FlowData::run_implicit(const Packing& packing, double step, double at_time,
   check_dynamics(grains, packing);
   set_motion(packing);
   ForcedMotion forced{motion, {}, yielding(grains, theta * step)};
-  moving = !at_rest(packing, box) || (forced.yielding.array() > 0.0).any();
+  moving = !at_rest(packing, box, options.torques) || (forced.yielding.array() > 0.0).any();
   refuse_undetermined(moving);
   make_force_matrices(*built, options, *team, counts);
   make_volume_rates(*built, options, *team, counts);

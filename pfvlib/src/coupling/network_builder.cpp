@@ -78,10 +78,9 @@ void make_force_matrix(BuiltNetwork& built, const Options& options, Team& team, 
   if (built.force_matrix) return;
   built.viscous_shares =
       viscous_shares(options.conductance, built.network, built.throats, built.vertices);
-  const bool moments = options.volume_rates == VolumeRates::reciprocal;
   built.force_matrix =
       force_matrix(built.network, built.vertices, built.throats, built.viscous_shares,
-                   built.grains.spheres.size(), {true, true, moments}, team);
+                   built.grains.spheres.size(), {true, true, options.torques}, team);
   ++counts.force_matrix;
 }
 

@@ -286,6 +286,8 @@ void check(const Options& options) {
                      "hydraulic_radius (or effective_radius), not with open_throat");
   if (options.partition == Partition::yade && options.volume_rates != VolumeRates::geometric)
     throw InputError("the yade partition reproduces YADE's results: use it with geometric volume rates");
+  if (options.torques && options.volume_rates != VolumeRates::reciprocal)
+    throw InputError("torques go with reciprocal volume rates: by geometric ones spins move no fluid");
   if (!options.forces &&
       (options.split_forces || options.sphere_pressure || options.shear_viscous))
     throw InputError("split forces, sphere pressures and shear viscous forces need forces: switch those "

@@ -71,6 +71,7 @@ void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options)
   refuse_if(fluid.bulk_modulus.has_value(), "bulk modulus");
   refuse_if(options.partition != defaults.partition, "partition of throats");
   refuse_if(options.volume_rates != defaults.volume_rates, "choice of volume rates");
+  refuse_if(options.torques, "torques");
   refuse_if(options.conductance != defaults.conductance, "conductance law");
   refuse_if(options.retriangulation_strain != defaults.retriangulation_strain,
             "retriangulation strain");
