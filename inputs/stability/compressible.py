@@ -27,7 +27,6 @@ DRY = 1.0  # Pa: a fluid that bears nothing
 STRAIN = 1e-4
 LARGE_STRAIN, LARGE_MODULUS = 1e-2, 1e7
 THRESHOLDS = [1.0, 1e-2, 1e-3]  # of new networks, pore strain
-HELD = {"integrate": "nve"}  # spins, without friction (spins.py)
 LATER = (0.1, 0.2, 0.4, 0.6)  # s
 LOAD, VISCOSITY = 1.0, 25.0  # N, Pa s
 STEP, STEPS, EVERY = 1e-4, 6000, 20
@@ -43,7 +42,7 @@ def undrained(modulus, strain=STRAIN, retriangulate=1.0, **grains):
     step = min(1e-5, 1e-5 * math.sqrt(1e8 / modulus))  # sound crosses no pore in a step
     screen = must(liggghts("in.undrained", data=f"post/{name()}.data", bulk=repr(modulus),
                            strain=strain, steps=2000, dt=step, retriangulate=retriangulate,
-                           **{**HELD, **grains}))
+                           **grains))
     rows = rows_of(screen)
     first, last = rows[1], rows[-1]
     return first[1], (last[1] - first[1]) / EDGE**2, last[2] - first[2], last[3]
@@ -66,7 +65,7 @@ def consolidation(modulus, before, **grains):
     fluid = f"bulk_modulus {modulus!r}" if math.isfinite(modulus) else "couple_every 1"
     screen = must(liggghts("in.suddenly", data=f"post/{name()}.data", before=before, load=LOAD,
                            viscosity=VISCOSITY, fluid=fluid, steps=STEPS, every=EVERY, dt=STEP,
-                           gamman=2000, **{**HELD, **grains}))
+                           gamman=2000, **grains))
     sensors = np.loadtxt(POST / "suddenly.csv", delimiter=",", skiprows=1)
     rows = np.array(rows_of(screen))[1:]
     times, stress = rows[:, 0] * STEP, LOAD / EDGE**2
@@ -122,20 +121,18 @@ def table():
 
 
 def terzaghi():
-    """Mean pressure of the incompressible consolidation with and without friction, spins held or free."""
+    """Mean pressure of the incompressible consolidation with and without friction."""
     write_lid()
-    rows = Table("friction", "spins", "drained modulus, Pa",
+    rows = Table("friction", "drained modulus, Pa",
                  *(f"mean pressure / load at {time:g} s: run, theory" for time in LATER))
     conductivity = permeability() / VISCOSITY
     for friction in (0.0, 0.5):
-        for spins, style in (("free", "nve/sphere"), ("held", "nve")):
-            grains = {"friction": friction, "integrate": style}
-            before, stress, _, _ = undrained(DRY, **grains)
-            times, _, mean = consolidation(math.inf, before, **grains)
-            theory = mean_in_theory(conductivity * stress / STRAIN * times / EDGE**2)
-            rows.row(friction, spins, f"{stress / STRAIN:.3g}",
-                     *(f"{np.interp(time, times, mean):.3f}, {np.interp(time, times, theory):.3f}"
-                       for time in LATER))
+        before, stress, _, _ = undrained(DRY, friction=friction)
+        times, _, mean = consolidation(math.inf, before, friction=friction)
+        theory = mean_in_theory(conductivity * stress / STRAIN * times / EDGE**2)
+        rows.row(friction, f"{stress / STRAIN:.3g}",
+                 *(f"{np.interp(time, times, mean):.3f}, {np.interp(time, times, theory):.3f}"
+                   for time in LATER))
     return rows
 
 

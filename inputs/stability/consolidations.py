@@ -14,10 +14,6 @@ GRAVITY = 10.0  # m/s2: under more these few grains change places, each run at i
 INSTANTS = 160
 RUNS = {10: ("staged", "implicit"), 100: ("staged", "implicit"), 1000: ("staged", "implicit"),
         10000: ("implicit",)}
-# grains that are free to spin let water pass in a time that their inertia sets (spins.py), so that runs of
-# two viscosities are not the same in t / viscosity
-SPINS = {"held": (10, 100, 1000, 10000), "free": (10, 100)}
-STYLES = {"held": "nve", "free": "nve/sphere"}
 REFERENCES = {10: ("time_step_check no", 50), 100: ("coupling implicit", 4),
               1000: ("coupling implicit", 2)}  # parts of STEP
 
@@ -77,27 +73,26 @@ def table():
     data = sample("dense", CELLS)
     limit, _ = printed(data, 1.0)
     load = weight(data)
-    rows = Table("spins", "R", "coupling", "steps", "new networks", "pressure at the end / largest",
+    rows = Table("R", "coupling", "steps", "new networks", "pressure at the end / largest",
                  "largest kinetic energy / work of the weight", "kinetic energy at the end / largest",
                  "settlement off", "force of the fluid off")
-    for spins, ratios in SPINS.items():
-        reference = None
-        for ratio in ratios:
-            viscosity, time = ratio * limit / STEP, ratio * STEPS * STEP
+    reference = None
+    for ratio in RUNS:
+        viscosity, time = ratio * limit / STEP, ratio * STEPS * STEP
 
-            def run(words, parts=1):
-                return consolidation(data, viscosity, STEP / parts, words, time, INSTANTS,
-                                     gravity=GRAVITY, integrate=STYLES[spins])
+        def run(words, parts=1):
+            return consolidation(data, viscosity, STEP / parts, words, time, INSTANTS,
+                                 gravity=GRAVITY)
 
-            if ratio in REFERENCES:
-                reference = run(*REFERENCES[ratio])
-            for coupling in RUNS[ratio]:
-                one = run(f"coupling {coupling}")
-                settled = one.heights[0] - one.heights[-1]
-                rows.row(spins, ratio, coupling, ratio * STEPS, one.networks,
-                         percent(one.pressures[-1] / max(one.pressures), 1),
-                         f"{max(one.energies) / (load * settled):.1e}",
-                         f"{one.energies[-1] / max(one.energies):.1e}",
-                         percent(largest(one.heights, reference.heights) / settled),
-                         percent(largest(one.mean_forces, reference.mean_forces) / load))
+        if ratio in REFERENCES:
+            reference = run(*REFERENCES[ratio])
+        for coupling in RUNS[ratio]:
+            one = run(f"coupling {coupling}")
+            settled = one.heights[0] - one.heights[-1]
+            rows.row(ratio, coupling, ratio * STEPS, one.networks,
+                     percent(one.pressures[-1] / max(one.pressures), 1),
+                     f"{max(one.energies) / (load * settled):.1e}",
+                     f"{one.energies[-1] / max(one.energies):.1e}",
+                     percent(largest(one.heights, reference.heights) / settled),
+                     percent(largest(one.mean_forces, reference.mean_forces) / load))
     return rows

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What grains that are free to spin do in a consolidation: settlements at the same t / viscosity."""
+"""What spins do that the fluid turns (`torques yes`): settlements at the same t / viscosity."""
 from consolidations import GRAVITY, consolidation
 from regions import limits_of
 from samples import sample
@@ -8,12 +8,12 @@ from tables import Table
 PART = 1 / 6  # of the contacts' limit
 CASES = ((4, 28, (10, 100, 1000)), (8, 112, (10, 100)))  # cells along each edge; steps over R; R
 ALL_RATIOS = CASES[0][2]
-SPINS = {"free": "nve/sphere", "held": "nve"}
+TORQUES = ("yes", "no")
 EXPLICIT_R = 0.7  # of the papers' E
 
 
 def table():
-    rows = Table("grains", "friction", "spins", "volume rates",
+    rows = Table("grains", "friction", "torques", "volume rates",
                  *(f"settlement, μm, R = {ratio}" for ratio in ALL_RATIOS))
     for cells, length, ratios in CASES:
         data = sample("dense", cells)
@@ -26,12 +26,12 @@ def table():
             return f"{1e6 * (run.heights[0] - run.heights[-1]):.1f}"
 
         for friction in (0.0, 0.5):
-            for spins, style in SPINS.items():
-                cells_of_row = [settled(ratio, "coupling implicit", friction=friction, integrate=style)
+            for torques in TORQUES:
+                cells_of_row = [settled(ratio, f"coupling implicit torques {torques}", friction=friction)
                                 for ratio in ratios]
-                rows.row(cells**3, friction, spins, "Sᵀ", *cells_of_row,
+                rows.row(cells**3, friction, torques, "Sᵀ", *cells_of_row,
                          *[""] * (len(ALL_RATIOS) - len(ratios)))
-            rows.row(cells**3, friction, "free", "E", settled(
+            rows.row(cells**3, friction, "", "E", settled(
                 ratios[0], "time_step_check no volume_rates geometric",
                 round(ratios[0] / EXPLICIT_R), friction=friction), *[""] * (len(ALL_RATIOS) - 1))
     return rows

@@ -23,7 +23,7 @@ class Pressures(CommandTest):
         lines = ["id,x,y,z,radius,vx,vy,vz"] + [",".join(map(str, row)) for row in rows]
         plug = self.write("plug.csv", "\n".join(lines) + "\n")
         report = self.report("--face", "zlo:flux=0.01", "--face", "zhi:pressure=0", "--viscosity",
-                             "1", "--forces", "forces.csv", packing=plug)
+                             "1", "--wall", "symmetry", "--forces", "forces.csv", packing=plug)
         self.assert_close(flux(report, "zhi"), -0.01, 1e-12)
         self.assertLess(abs(report["mass_error"]), 1e-13)
         self.assertLess(max(abs(value) for row in self.forces("forces.csv").values()

@@ -2,7 +2,7 @@
 """What moves between two runs leads to the network that a new fix would have; what stays keeps its own."""
 import unittest
 
-from coupled import EDGE, FLOW, CoupledTest, dump, faces, packing, read_dump, read_thermo, write_data
+from coupled import EDGE, FLOW, WATER, CoupledTest, dump, faces, packing, read_dump, read_thermo, write_data
 from plates import square, write_plate
 
 HEAD = "include in.packing\n"
@@ -65,7 +65,7 @@ class BetweenRuns(CoupledTest):
 
     def test_an_interval_of_couple_every_begins_anew(self):
         """Its mean velocities would otherwise hold the displacement."""
-        flow = FLOW + " couple_every 5"
+        flow = WATER + " couple_every 5"
         fix = f"fix flow all pfv {flow}\n"
         move = "displace_atoms all move 1e-3 0 0 units box\nvelocity all set 0 0 0\n"
         still = "unfix integr\nvelocity all set 0 0 0\n"

@@ -136,7 +136,7 @@ class Multisphere(CoupledTest):
     def test_auto_is_explicit_or_refused(self):
         flow = "fix flow all pfv viscosity {} " + CLOSE + " coupling auto\nrun 1\n"
         self.assertIn("explicit coupling, stages 1", self.liggghts(self.head() + flow.format(1)))
-        self.refused(self.head() + flow.format(2000), "above the explicit limit", "rigid bodies")
+        self.refused(self.head() + flow.format(20000), "above the explicit limit", "rigid bodies")
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ constexpr double at_rest_scale = 0.12;
 /// What the whole lower face brings in goes out above.
 pfv::Box plug_box() {
   pfv::Box box;
+  for (const pfv::Face face : pfv::all_faces) box[face].wall = pfv::Wall::symmetry;  // the others hold the fluid
   box[pfv::Face::zlo].boundary = pfv::Boundary::flux(speed);
   box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
   return box;
