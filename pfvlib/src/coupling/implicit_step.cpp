@@ -11,8 +11,8 @@ namespace {
 /// How far into the step, from 1/2 to 1, the velocities lie that the pressures belong to. Those of its end,
 /// 1, are right half a step later than the forces act, which are means over the step; those of its
 /// middle let the fastest motions swing for ever. 2/3 leaves a third of that shift, halves these swings
-/// from step to step, and errs least in the force at 80 limits of the explicit coupling in a step: by 0.6 %,
-/// where 0.52 errs by 0.9 % and 1 by 0.8 % (`./run.sh stability convergence`).
+/// from step to step. With torques it erred least in the force at 80 limits of the explicit coupling in a step:
+/// by 0.6 %, where 0.52 erred by 0.9 % and 1 by 0.8 %.
 constexpr double theta = 2.0 / 3.0;
 
 }  // namespace
