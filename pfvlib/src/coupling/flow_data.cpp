@@ -21,9 +21,11 @@ const Forces& FlowData::compute(const Packing& packing, double step, bool advanc
     balance_.reset();
     swept = advance && coupling == Coupling::explicit_step ? swept_volume(step) : 0.0;
     update_network(packing, step, advance);
-    displaced.resize(built->grains.spheres.size());
-    for (Eigen::Index i = 0; i < displaced.size(); ++i)
-      displaced[i] = displaced_volume(packing, built->grains.columns[i]);
+    if (options.buoyancy && !fluid.gravity.isZero(0.0)) {
+      displaced.resize(built->grains.spheres.size());
+      for (Eigen::Index i = 0; i < displaced.size(); ++i)
+        displaced[i] = displaced_volume(packing, built->grains.columns[i]);
+    }
     factor_pressures(*built, build_settings(), step, {counts, seconds});
     counts.pinned_pores = 0;
     for (const Isolated& isolated : built->system.isolated)
