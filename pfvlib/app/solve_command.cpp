@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve_command.hpp"
 
-#include "coupling/grains.hpp"
-#include "coupling/phase_clock.hpp"
+#include "network/grains.hpp"
+#include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
 #include "pfv/darcy_grid.hpp"
 #include "pfv/io.hpp"

@@ -54,14 +54,8 @@ class DarcyGrid final : public FlowModel {
   DarcyGrid(DarcyGrid&&) noexcept;
   DarcyGrid& operator=(DarcyGrid&&) noexcept;
 
-  const Forces& step(const Packing& packing, double dt) override;
-  const Forces& evaluate(const Packing& packing, double dt = 0.0) override;
-  /// Throw InputError: there are no stages here.
-  const Forces& step_staged(const Packing& packing, double dt,
-                            const GrainDynamics& grains) override;
-  const Forces& evaluate_staged(const Packing& packing, double dt,
-                                const GrainDynamics& grains) override;
-  int stages() const override { return 1; }
+  /// Automatic coupling is explicit here; others are refused.
+  const Forces& advance(const Packing& packing, double dt, const Step& step = {}) override;
   void rebuild() override;
 
   void set_box(const Box& box) override;

@@ -36,6 +36,11 @@ enum class Partition { signed_angles, yade };
 /// motions of grains of unlike size (doc/method.md).
 enum class VolumeRates { reciprocal, geometric };
 
+/// How the pressures of a step are found. `explicit_step`: from the velocities given. `staged`: the drag is
+/// integrated over the step in sub-stages. `implicit`: together with the velocities that follow. `automatic`:
+/// what is cheapest and stable, chosen for each network.
+enum class Coupling { explicit_step, staged, implicit, automatic };
+
 /// What to do with a grain whose centre is not inside the flow box.
 enum class OutsideGrains { refuse, leave_out };
 
@@ -92,11 +97,13 @@ const char* name_of(OrderingKind ordering);
 const char* name_of(Precision precision);
 const char* name_of(StrainMeasure measure);
 const char* name_of(VolumeRates rates);
+const char* name_of(Coupling coupling);
 ConductanceLaw conductance_law_named(const std::string& name);
 Partition partition_named(const std::string& name);
 SolverKind solver_named(const std::string& name);
 OrderingKind ordering_named(const std::string& name);
 Precision precision_named(const std::string& name);
 VolumeRates volume_rates_named(const std::string& name);
+Coupling coupling_named(const std::string& name);
 
 }  // namespace pfv
