@@ -93,8 +93,8 @@ class DarcyGrid final : public FlowModel {
   Eigen::Vector3d lower_corner() const;  ///< m, of the first cell
 
   Report report() const override;
-  /// Hexahedra with pressure, porosity, permeability and velocity.
-  void write_fields(const std::string& path) const override;
+  /// Boxes with pressure, porosity, permeability and velocity.
+  FieldGrid fields() const override;
   const char* field_name() const override { return "cells"; }
 
  private:

@@ -114,7 +114,9 @@ class Flow final : public FlowModel {
   /// Cost: one pass over the network and, the first time after a triangulation, the exact union of
   /// the spheres.
   Report report() const override;
-  void write_fields(const std::string& path) const override;
+  /// Pores as points, a cell each (pressure, volume of the fluid, velocity), and throats as lines (conductance,
+  /// flux). Cost: as faces().
+  FieldGrid fields() const override;
   const char* field_name() const override { return "pores"; }
 
  private:

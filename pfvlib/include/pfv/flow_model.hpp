@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pfv/box.hpp"
+#include "pfv/fields.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
 #include "pfv/packing.hpp"
@@ -150,8 +151,8 @@ class FlowModel {
 
   /// Balances, permeability, counts, times of everything done so far.
   virtual Report report() const = 0;
-  /// The fields of the last call as a VTK unstructured grid (.vtu). Throws FileError.
-  virtual void write_fields(const std::string& path) const = 0;
+  /// The fields of the last call, to be drawn or written.
+  virtual FieldGrid fields() const = 0;
   /// What the cells of that grid are: "pores" or "cells".
   virtual const char* field_name() const = 0;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The permeability of a packing and how far it can be trusted.
+#include "physics/macroscopic_gradient.hpp"
 #include "physics/permeability_error.hpp"
 #include "results/balance.hpp"
 #include "step/operators.hpp"

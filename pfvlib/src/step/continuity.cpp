@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/continuity.hpp"
 
+#include "physics/macroscopic_gradient.hpp"
 #include "step/operators.hpp"
 
 #include <algorithm>

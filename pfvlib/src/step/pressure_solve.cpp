@@ -2,6 +2,7 @@
 #include "step/pressure_solve.hpp"
 
 #include "pfv/error.hpp"
+#include "physics/macroscopic_gradient.hpp"
 #include "step/continuity.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"

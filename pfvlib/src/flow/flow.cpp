@@ -4,7 +4,7 @@
 
 #include "pfv/error.hpp"
 #include "problem/box_changes.hpp"
-#include "step/flow_parts.hpp"
+#include "flow/flow_parts.hpp"
 #include "step/forces.hpp"
 #include "step/network_builder.hpp"
 #include "work/phase_clock.hpp"

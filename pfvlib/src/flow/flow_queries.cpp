@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What Flow answers from its last solution.
+#include "flow/flow_parts.hpp"
 #include "pfv/error.hpp"
-#include "pfv/flow.hpp"
-#include "pfv/io.hpp"
 #include "results/averages.hpp"
+#include "results/network_fields.hpp"
 #include "results/network_report.hpp"
 #include "results/viscosity_matrices.hpp"
-#include "step/flow_parts.hpp"
 #include "step/forces.hpp"
 
 namespace pfv {
@@ -141,6 +140,8 @@ Report Flow::report() const {
   return report;
 }
 
-void Flow::write_fields(const std::string& path) const { write_network(path, *this); }
+FieldGrid Flow::fields() const {
+  return network_fields(parts_->network(), parts_->solution, parts_->balance());
+}
 
 }  // namespace pfv
