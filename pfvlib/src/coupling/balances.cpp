@@ -2,6 +2,7 @@
 #include "coupling/balance_terms.hpp"
 #include "coupling/continuity.hpp"
 #include "coupling/flow_data.hpp"
+#include "solve/solver_abilities.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -191,6 +192,7 @@ Report make_report(FlowData& flow) {
   report.residual = relative_residual(flow.solved_matrix(), flow.solution, flow.right_side);
   report.solver = flow.built->solver->name();
   report.ordering = name_of(resolved(flow.options.solver, flow.options.ordering));
+  report.solver_made_of = made_of(flow.options.solver, flow.options.ordering);
   report.conductance = name_of(flow.options.conductance);
   report.faces = balance.faces;
   report.openings = openings(flow, balance.contact_inflows);

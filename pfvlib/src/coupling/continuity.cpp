@@ -3,6 +3,7 @@
 
 #include "coupling/flow_data.hpp"
 #include "pfv/error.hpp"
+#include "solve/solver_abilities.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 #include "coupling/balance_terms.hpp"
 #include "darcy_grid/darcy_data.hpp"
 #include "network/pore_boundaries.hpp"
+#include "solve/solver_abilities.hpp"
 
 #include <cmath>
 
@@ -85,6 +86,7 @@ Report make_report(const DarcyData& flow) {
     report.residual = relative_residual(built.matrix, flow.solution, flow.right_side);
   if (flow.solver) report.solver = flow.solver->name();
   report.ordering = name_of(resolved(flow.options.solver, flow.options.ordering));
+  report.solver_made_of = made_of(flow.options.solver, flow.options.ordering);
   report.conductance = "kozeny_carman";
   report.threads = flow.options.threads;
   report.faces = flow.faces;
