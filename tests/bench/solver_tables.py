@@ -40,6 +40,8 @@ def precision(build):
 
 
 SIZES = (1000, 5000, 20000)
+SOLVERS = ("supernodal", "cholmod", "tacho", "mumps", "klu2", "cg", "gauss_seidel")
+ORDERINGS = ("geometric", "metis", "amd", "auto")
 
 
 def solve_bench(build, *options):
@@ -51,11 +53,15 @@ def solve_bench(build, *options):
         if row.get("aggregate_name") == "median":
             solver, ordering, spheres = row["run_name"].split("/")[:3]
             rows.setdefault((solver, ordering), {})[int(spheres)] = row
-    return rows
+    return dict(sorted(rows.items(), key=lambda row: (SOLVERS.index(row[0][0]), ORDERINGS.index(row[0][1]))))
 
 
-def entries(sizes, form, value):
-    return " / ".join(format(value(sizes[size]), form) if size in sizes else "–" for size in SIZES)
+def digits(number):
+    return f"{number:.3g}" if number < 999.5 else f"{float(f'{number:.3g}'):.0f}"
+
+
+def entries(sizes, text, value):
+    return " / ".join(text(value(sizes[size])) if size in sizes else "–" for size in SIZES)
 
 
 def solvers(build):
@@ -64,14 +70,14 @@ def solvers(build):
              "over supernodal's | MB held | residual |", "|--" * 8 + "|"]
     for (solver, ordering), sizes in rows.items():
         ours = rows.get(("supernodal", ordering), rows["supernodal", "geometric"])
-        cells = [entries(sizes, ".3g", lambda row, name=name: row[name])
+        cells = [entries(sizes, digits, lambda row, name=name: row[name])
                  for name in ("order", "factor", "solve", "hundred")]
         ratios = " / ".join(f"{sizes[size]['hundred'] / ours[size]['hundred']:.2f}" if size in sizes else "–"
                             for size in SIZES)
         name = f"{solver}, {ordering}" if ordering != "auto" else solver
         lines.append(f"| {name} | " + " | ".join(cells) + f" | {ratios} | " +
-                     entries(sizes, ".3g", lambda row: row["memory_MB"]) + " | " +
-                     entries(sizes, ".0e", lambda row: row["residual"]) + " |")
+                     entries(sizes, digits, lambda row: row["memory_MB"]) + " | " +
+                     entries(sizes, "{:.0e}".format, lambda row: row["residual"]) + " |")
     load = ", ".join(f"{load:.1f}" for load in os.getloadavg())
     return f"Load averages at the end {load}.\n\n" + "\n".join(lines)
 
