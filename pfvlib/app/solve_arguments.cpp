@@ -254,17 +254,17 @@ void add_method_options(CLI::App& command, SolveArguments& arguments) {
                    "forces act where they lie, and spins (omegax, omegay, omegaz) move fluid")
       ->group(group);
   command.add_option("--solver", arguments.solver,
-                     "linear solver (default " + arguments.solver + ": cholmod)")
-      ->option_text("auto|cholmod|klu2|mumps|cg|gauss_seidel")->group(group);
+                     "linear solver (default " + arguments.solver + ": supernodal)")
+      ->option_text("auto|supernodal|cholmod|tacho|klu2|mumps|cg|gauss_seidel")->group(group);
   command.add_option("--ordering", arguments.ordering,
                      "fill-reducing ordering (default " + arguments.ordering +
-                     ": geometric; for cholmod)")
+                     ": geometric;\nfor tacho: metis); of supernodal, cholmod and tacho")
       ->option_text("auto|geometric|metis|amd")->group(group);
   command.add_option("--tolerance", arguments.tolerance,
                      "residual over right-hand side where cg and gauss_seidel end (default 1e-10)")
       ->option_text("T")->group(group);
   command.add_option("--precision", arguments.precision,
-                     "how cholmod keeps its factor: mixed has half as much to read a step and\n"
+                     "how supernodal keeps its factor: mixed has half as much to read a step and\n"
                      "solves to a residual of 1e-9 (default " + arguments.precision + ")")
       ->option_text("double|mixed")->group(group);
   command.add_option("--threads", arguments.threads,

@@ -69,7 +69,7 @@ class Refusals(CoupledTest):
 
     def test_unknown_law_and_solver(self):
         self.refuse(FLOW + " conductance darcy", "darcy", "hydraulic_radius", after="")
-        self.refuse(FLOW + " solver guess", "guess", "cholmod", after="")
+        self.refuse(FLOW + " solver guess", "guess", "supernodal", after="")
 
     def test_strain_and_interval_not_positive(self):
         self.refuse(FLOW + " retriangulate 0", "strain", after="")

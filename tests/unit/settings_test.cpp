@@ -34,14 +34,14 @@ TEST(Names, EachOptionReadsBackAsItself) {
   using namespace pfv;
   for (const char* name : {"hydraulic_radius", "effective_radius", "open_throat"})
     EXPECT_STREQ(name_of(conductance_law_named(name)), name);
-  for (const char* name : {"auto", "cholmod", "klu2"})
+  for (const char* name : {"auto", "supernodal", "cholmod", "tacho", "klu2", "mumps", "cg", "gauss_seidel"})
     EXPECT_STREQ(name_of(solver_named(name)), name);
   for (const char* name : {"auto", "metis", "amd"})
     EXPECT_STREQ(name_of(ordering_named(name)), name);
 }
 
 TEST(Names, AnUnknownNameIsRefusedWithTheListOfThoseThatExist) {
-  expect_line(refusal([] { pfv::solver_named("pardiso"); }), "auto, cholmod, klu2");
+  expect_line(refusal([] { pfv::solver_named("pardiso"); }), "auto, supernodal, cholmod, tacho, klu2");
   expect_line(refusal([] { pfv::ordering_named(""); }), "auto, geometric, metis, amd");
   expect_line(refusal([] { pfv::conductance_law_named("Hydraulic_radius"); }),
                "hydraulic_radius, effective_radius");

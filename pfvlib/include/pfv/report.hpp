@@ -73,6 +73,7 @@ struct Report {
   double force_balance_error = 0;
   double residual = 0;
   std::string solver, ordering, conductance;
+  std::string solver_made_of;  ///< which code ordered, analysed, factored and solved
   std::array<FaceResult, 6> faces;
   std::vector<OpeningResult> openings;  ///< the patches, then the regions, in their order
   Counts counts;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "darcy_grid/darcy_data.hpp"
 #include "results/balance_terms.hpp"
+#include "solve/solver_abilities.hpp"
 
 #include <cmath>
 
@@ -64,6 +65,7 @@ Report make_report(const DarcyData& flow) {
     report.residual = relative_residual(built.matrix, flow.last.relative, flow.last.right_side);
   if (flow.solver) report.solver = flow.solver->name();
   report.ordering = name_of(resolved(flow.options.solver, flow.options.ordering));
+  report.solver_made_of = made_of(flow.options.solver, flow.options.ordering);
   report.conductance = "kozeny_carman";
   report.threads = flow.options.threads;
   report.faces = flow.last.faces;

@@ -100,6 +100,7 @@ Json to_json(const Report& report) {
           {"residual", number(report.residual)},
           {"solver", report.solver},
           {"ordering", report.ordering},
+          {"solver_made_of", report.solver_made_of},
           {"conductance", report.conductance},
           {"faces", faces(report)},
           {"openings", openings(report)},

@@ -4,7 +4,7 @@
 #include "pfv/error.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
-#include "solve/linear_solver.hpp"
+#include "solve/solver_abilities.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -27,8 +27,10 @@ constexpr std::array<Named<ConductanceLaw>, 3> conductance_laws{
      {ConductanceLaw::open_throat, "open_throat"}}};
 constexpr std::array<Named<Partition>, 2> partitions{
     {{Partition::signed_angles, "signed"}, {Partition::yade, "yade"}}};
-constexpr std::array<Named<SolverKind>, 6> solvers{{{SolverKind::automatic, "auto"},
+constexpr std::array<Named<SolverKind>, 8> solvers{{{SolverKind::automatic, "auto"},
+                                                    {SolverKind::supernodal, "supernodal"},
                                                     {SolverKind::cholmod, "cholmod"},
+                                                    {SolverKind::tacho, "tacho"},
                                                     {SolverKind::klu2, "klu2"},
                                                     {SolverKind::mumps, "mumps"},
                                                     {SolverKind::cg, "cg"},
@@ -151,11 +153,6 @@ void check_lag(const Options& options) {
     throw InputError("the rebuild lag is " + std::to_string(options.rebuild_lag) +
                      ": give a number of steps, or 0 for rebuilds within a step");
   if (options.rebuild_lag == 0) return;
-  const SolverKind solver = resolved(options.solver);
-  if (solver == SolverKind::klu2 || solver == SolverKind::mumps)
-    throw InputError(std::string("the solver ") + name_of(solver) +
-                     " does not factor in the background: use the solver cholmod, or set rebuild_lag "
-                     "to 0");
   if (options.ordering == OrderingKind::metis)
     throw InputError("the ordering metis draws on random numbers that it shares with all threads, so "
                      "that runs with rebuilds in the background would not repeat: use the ordering "
@@ -274,17 +271,11 @@ void check(const Options& options) {
                      ": give a number > 0");
   name_of(options.strain_measure);
   check_lag(options);
-  check(options.solver, options.ordering);
+  check_solver(options);
   if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
     throw InputError("tolerance is " + number_text(options.tolerance) +
                      ": give a number above 0 and below 1");
-  if (options.tolerance != default_tolerance && !is_iterative(options.solver))
-    throw InputError(std::string("the solver ") + name_of(resolved(options.solver)) +
-                     " is direct and takes no tolerance; use the solver cg or gauss_seidel");
   name_of(options.precision);
-  if (options.precision == Precision::mixed && resolved(options.solver) != SolverKind::cholmod)
-    throw InputError(std::string("the solver ") + name_of(options.solver) +
-                     " takes no mixed precision; use the solver cholmod, or the precision double");
   if (options.threads < 1 || options.threads > 64)
     throw InputError("the number of threads is " + std::to_string(options.threads) +
                      ": give 1 to 64");
