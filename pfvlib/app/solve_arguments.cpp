@@ -3,8 +3,8 @@
 
 #include "face_arguments.hpp"
 #include "io/atomic_file.hpp"
-#include "io/number_text.hpp"
-#include "io/text_lines.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 

@@ -2,7 +2,7 @@
 #include "pfv/darcy_grid.hpp"
 
 #include "darcy_grid/darcy_data.hpp"
-#include "io/number_text.hpp"
+#include "text/number_text.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
 

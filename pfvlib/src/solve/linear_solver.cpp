@@ -19,37 +19,6 @@ Eigen::VectorXd multiply(const SymmetricMatrix& matrix, const Eigen::VectorXd& x
   return product;
 }
 
-SolverKind resolved(SolverKind solver) {
-  return solver == SolverKind::automatic ? SolverKind::cholmod : solver;
-}
-
-OrderingKind resolved(SolverKind solver, OrderingKind ordering) {
-  if (ordering != OrderingKind::automatic) return ordering;
-  if (resolved(solver) == SolverKind::cholmod) return OrderingKind::geometric;
-  return resolved(solver) == SolverKind::klu2 ? OrderingKind::amd : OrderingKind::automatic;
-}
-
-void check(SolverKind solver, OrderingKind ordering) {
-  const SolverKind kind = resolved(solver);
-#ifndef PFV_WITH_MUMPS
-  if (kind == SolverKind::mumps) {
-    throw InputError("this build has no solver mumps; configure it with -DPFV_WITH_MUMPS=ON, or "
-                     "use the solver cholmod");
-  }
-#endif
-  if (kind == SolverKind::cholmod || ordering == OrderingKind::automatic) return;
-  if (kind == SolverKind::klu2 && ordering == OrderingKind::amd) return;
-  throw InputError(std::string("the solver ") + name_of(kind) + " takes no ordering " +
-                   name_of(ordering) + "; use " +
-                   (kind == SolverKind::klu2 ? "the ordering amd (its own) or auto" :
-                                               "the ordering auto") +
-                   ", or the solver cholmod");
-}
-
-bool is_iterative(SolverKind solver) {
-  return solver == SolverKind::cg || solver == SolverKind::gauss_seidel;
-}
-
 std::unique_ptr<LinearSolver> make_solver(const Options& options, std::shared_ptr<Team> team) {
   check(options.solver, options.ordering);
   const SolverKind kind = resolved(options.solver);

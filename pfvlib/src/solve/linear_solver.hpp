@@ -3,6 +3,7 @@
 
 #include "parallel/team.hpp"
 #include "pfv/options.hpp"
+#include "problem/solver_traits.hpp"
 
 #include <Eigen/Core>
 #include <memory>
@@ -51,14 +52,5 @@ std::unique_ptr<LinearSolver> make_solver(const Options& options,
                                           std::shared_ptr<Team> team = nullptr);
 /// The same with the other options as they are by default.
 std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering);
-
-bool is_iterative(SolverKind solver);
-
-/// Throws InputError for an ordering that the solver does not take.
-void check(SolverKind solver, OrderingKind ordering);
-
-/// What `automatic` stands for where the places of the unknowns are given.
-SolverKind resolved(SolverKind solver);
-OrderingKind resolved(SolverKind solver, OrderingKind ordering);
 
 }  // namespace pfv

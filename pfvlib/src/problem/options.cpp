@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/number_text.hpp"
+#include "text/number_text.hpp"
 #include "pfv/box.hpp"
 #include "pfv/error.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
-#include "solve/linear_solver.hpp"
+#include "problem/solver_traits.hpp"
 
 #include <cmath>
 #include <cstddef>
