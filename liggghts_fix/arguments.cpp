@@ -66,7 +66,7 @@ class Words {
     return {to_number(text, what), ""};
   }
 
-  pfv::Face face() { return pfv::face_named(word("the name of a face")); }
+  pfv::Face face() { return pfv::named<pfv::Face>(word("the name of a face")); }
 
   int axis() {
     const std::string text = word("the axis");
@@ -258,7 +258,7 @@ void parse_model(Words& words, PfvSettings& settings) {
   };
   while (true) {
     if (take("every")) grid.refresh_every = words.count("the number of flow steps");
-    else if (take("drag")) grid.drag = pfv::drag_law_named(words.word("the drag law"));
+    else if (take("drag")) grid.drag = pfv::named<pfv::DragLaw>(words.word("the drag law"));
     else if (take("grain_motion")) grid.grain_motion = words.yes_or_no();
     else break;
   }
@@ -314,15 +314,15 @@ void parse_keyword(Words& words, Once& once, PfvSettings& settings) {
   else if (keyword == "shear_viscous") settings.options.shear_viscous = words.yes_or_no();
   else if (keyword == "torques") settings.options.torques = words.yes_or_no();
   else if (keyword == "volume_rates")
-    settings.options.volume_rates = pfv::volume_rates_named(words.word("the name"));
+    settings.options.volume_rates = pfv::named<pfv::VolumeRates>(words.word("the name"));
   else if (keyword == "conductance")
-    settings.options.conductance = pfv::conductance_law_named(words.word("the law's name"));
+    settings.options.conductance = pfv::named<pfv::ConductanceLaw>(words.word("the law's name"));
   else if (keyword == "solver")
-    settings.options.solver = pfv::solver_named(words.word("the solver's name"));
+    settings.options.solver = pfv::named<pfv::SolverKind>(words.word("the solver's name"));
   else if (keyword == "tolerance")
     settings.options.tolerance = words.number("the tolerance");
   else if (keyword == "precision")
-    settings.options.precision = pfv::precision_named(words.word("the precision's name"));
+    settings.options.precision = pfv::named<pfv::Precision>(words.word("the precision's name"));
   else if (keyword == "threads")
     settings.options.threads = words.count("the number of threads");
   else if (keyword == "output") parse_fields(words, settings);

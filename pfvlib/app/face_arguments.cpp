@@ -86,7 +86,7 @@ class FaceItems {
 
 Face face_of(const std::string& where, const std::string& name) {
   try {
-    return face_named(name);
+    return named<Face>(name);
   } catch (const InputError& error) {
     fail(where, error.what());
   }

@@ -137,19 +137,19 @@ int threads_of(const SolveArguments& arguments) {
 
 Options options_of(const SolveArguments& arguments) {
   Options options;
-  options.partition = partition_named(arguments.partition);
+  options.partition = named<Partition>(arguments.partition);
   if (arguments.conductance)
-    options.conductance = conductance_law_named(*arguments.conductance);
+    options.conductance = named<ConductanceLaw>(*arguments.conductance);
   else if (options.partition == Partition::yade)
     options.conductance = ConductanceLaw::hydraulic_radius;  // YADE's
   if (arguments.volume_rates)
-    options.volume_rates = volume_rates_named(*arguments.volume_rates);
+    options.volume_rates = named<VolumeRates>(*arguments.volume_rates);
   else if (options.partition == Partition::yade)
     options.volume_rates = VolumeRates::geometric;  // YADE's
   options.torques = arguments.torques;
-  options.solver = solver_named(arguments.solver);
-  options.ordering = ordering_named(arguments.ordering);
-  options.precision = precision_named(arguments.precision);
+  options.solver = named<SolverKind>(arguments.solver);
+  options.ordering = named<OrderingKind>(arguments.ordering);
+  options.precision = named<Precision>(arguments.precision);
   if (arguments.tolerance) options.tolerance = number("--tolerance", *arguments.tolerance);
   options.threads = threads_of(arguments);
   // Only what an output shows is computed: the report holds the sum of the forces.
@@ -174,7 +174,7 @@ std::optional<DarcyOptions> grid_of(const SolveArguments& arguments) {
   DarcyOptions grid;
   for (std::size_t axis = 0; axis < grid.cells.size(); ++axis)
     grid.cells[axis] = whole_number("--cells", arguments.cells[axis]);
-  if (!arguments.drag.empty()) grid.drag = drag_law_named(arguments.drag);
+  if (!arguments.drag.empty()) grid.drag = named<DragLaw>(arguments.drag);
   return grid;
 }
 

@@ -52,7 +52,7 @@ std::array<Piston, 6> pistons_of(const std::vector<std::string>& arguments) {
     const std::size_t colon = argument.find(':');
     if (colon == std::string::npos)
       throw InputError("--piston: " + detail::quoted(argument) + " is no NAME:MASS, e.g. zhi:0.5");
-    Piston& piston = pistons[static_cast<std::size_t>(face_named(argument.substr(0, colon)))];
+    Piston& piston = pistons[static_cast<std::size_t>(named<Face>(argument.substr(0, colon)))];
     if (std::isfinite(piston.mass))
       throw InputError("--piston: face " + argument.substr(0, colon) + " occurs twice");
     piston.mass = positive("--piston", argument.substr(colon + 1));
