@@ -18,10 +18,10 @@ std::vector<double> contact_inflows(const FlowData& flow, const Eigen::VectorXd&
     if (contact.boundary >= first_region(flow.solved_box) &&
         contact.face != PoreBoundaries::inside)
       return false;
-    const Boundary::Kind kind = boundary_of(flow.solved_box, contact.boundary).kind;
+    const Boundary& boundary = boundary_of(flow.solved_box, contact.boundary);
     const int unknown = flow.built->unknowns.of_pore[contact.pore];
-    if (unknown == Unknowns::imposed) return kind == Boundary::Kind::pressure;
-    return kind == Boundary::Kind::flux &&
+    if (unknown == Unknowns::imposed) return boundary.imposes_pressure();
+    return boundary.imposes_flux() &&
            flow.built->unknowns.of_boundary[contact.boundary] == unknown;
   };
   std::vector<double> result(contacts.size(), 0.0);

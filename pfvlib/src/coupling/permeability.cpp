@@ -60,7 +60,7 @@ std::optional<TensorFlow> tensor_flow(const FlowData& flow) {
   if (!flow.solved_box.any_periodic() || flow.moving || flow.built->storage.size() > 0) return {};
   // a pressure on another face excludes a gradient
   for (const auto& contact : flow.built->boundaries.contacts)
-    if (boundary_of(flow.solved_box, contact.boundary).kind != Boundary::Kind::sealed) return {};
+    if (boundary_of(flow.solved_box, contact.boundary).is_open()) return {};
   const BuiltNetwork& built = *flow.built;
   const PoreNetwork& network = built.network;
   TensorFlow result;
