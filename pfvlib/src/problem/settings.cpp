@@ -240,7 +240,7 @@ std::vector<Setting> of_fluid() {
 std::vector<Setting> of_method() {
   return {
       model(),
-      number(row("Method", "cells", "cells along x, y and z; in the fix behind the model's name", command, grid),
+      number(row("Method", "cells", "cells along x, y and z, always to be given; in the fix behind the name of the model", command, grid),
              "cells", "NX NY NZ", "", demands::count, darcy(&DarcyOptions::cells)),
       number(row("Method", "every", "look at the porosity every this many flow steps", in_model, grid),
              "number of flow steps between two looks at the porosity", "N", "", demands::count,
