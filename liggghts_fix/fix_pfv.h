@@ -69,10 +69,7 @@ class FixPfv : public Fix {
 
   // one flow call
   pfv::Box current_box();
-  double value_of(const PfvValue& value);
-  pfv::Boundary boundary_of(const PfvBoundary& boundary);
-  pfv::Boundary boundary_of(const PfvFace& face);
-  bool has_variables() const;
+  void update_bound_numbers();
   void read_host();
   void advance();
   void prepare_flow(const pfv::Box& box);
@@ -158,7 +155,7 @@ class FixPfv : public Fix {
   std::optional<pfv::Report> report_;
   std::optional<pfv::SolveInterval> interval_;
   PfvSnapshot last_grains_;
-  PfvCoupling chosen_ = PfvCoupling::explicit_forces;
+  pfv::CouplingChoice chosen_ = pfv::CouplingChoice::explicit_step;
   double strain_of_a_step_ = 0.0;  // of the last one, 0 before the first of a run
   std::int64_t chosen_for_ = 0;  // retriangulations when the coupling was chosen
   bool cited_ = false;

@@ -17,24 +17,16 @@ namespace LAMMPS_NS {
 
 namespace {
 
-const char* name_of(PfvCoupling coupling) {
-  switch (coupling) {
-    case PfvCoupling::staged: return "staged";
-    case PfvCoupling::implicit: return "implicit";
-    default: return "explicit";
-  }
-}
-
 /// The cheaper of the two couplings that go beyond the limit, by what a step costs in solves of the
 /// explicit coupling (doc/stability.md, costs): a stage is a solve and a product with S and S^T, about
 /// 1.6 sqrt(R) of them a step; an implicit step is one solve with a denser factor, made anew `steps`
 /// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB.
-PfvCoupling cheaper(double ratio, double steps, Eigen::Index grains) {
+pfv::CouplingChoice cheaper(double ratio, double steps, Eigen::Index grains) {
   constexpr double of_a_stage = 1.15, of_an_implicit_step = 8.0, of_its_factor = 800.0;
   constexpr Eigen::Index largest = 20000;
   const double staged = of_a_stage * 1.6 * std::sqrt(ratio);
   const double implicit = of_an_implicit_step + of_its_factor / steps;
-  return grains <= largest && implicit < staged ? PfvCoupling::implicit : PfvCoupling::staged;
+  return grains <= largest && implicit < staged ? pfv::CouplingChoice::implicit : pfv::CouplingChoice::staged;
 }
 
 }  // namespace
@@ -45,28 +37,28 @@ void FixPfv::bind_coupling() {
   rigid_bodies_ = others.rigid_bodies();
   obstacle_.clear();
   if (!needs_forces()) return;
-  obstacle_ = settings_.couple_every > 1
+  obstacle_ = settings_.steps.couple_every > 1
                   ? "staged and implicit coupling need `couple_every 1`; they integrate the drag over "
                     "each step"
                   : others.obstacle_to_long_steps();
-  if (settings_.coupling != PfvCoupling::automatic && !obstacle_.empty())
+  if (settings_.steps.coupling != pfv::CouplingChoice::automatic && !obstacle_.empty())
     stop(FLERR, obstacle_);
 }
 
 /// Whether the flow may have to know the forces that act beside its own.
-bool FixPfv::needs_forces() const { return settings_.coupling != PfvCoupling::explicit_forces; }
+bool FixPfv::needs_forces() const { return settings_.steps.coupling != pfv::CouplingChoice::explicit_step; }
 
-double FixPfv::flow_step() const { return settings_.couple_every * update->dt; }
+double FixPfv::flow_step() const { return settings_.steps.couple_every * update->dt; }
 
 double FixPfv::time_step_limit() { return flow_->time_step_limit(grains_.masses(), pistons_); }
 
 /// Asked for each network, and for the first two steps of a run; rank 0.
 void FixPfv::choose_coupling() {
   chosen_for_ = flow_->retriangulations();
-  chosen_ = settings_.coupling;
-  if (settings_.coupling != PfvCoupling::automatic) return;
+  chosen_ = settings_.steps.coupling;
+  if (settings_.steps.coupling != pfv::CouplingChoice::automatic) return;
   const double limit = time_step_limit();
-  const double ratio = flow_step() / (settings_.safety * limit);
+  const double ratio = flow_step() / (settings_.steps.safety * limit);
   if (ratio > 1.0 && !obstacle_.empty()) {
     char text[120];
     std::snprintf(text, sizeof text, "the flow step of %g s is above the explicit limit of %g s: ",
@@ -78,9 +70,9 @@ void FixPfv::choose_coupling() {
                            ? settings_.options.retriangulation_strain / strain_of_a_step_
                            : unknown;
   if (!(ratio > 1.0))
-    chosen_ = PfvCoupling::explicit_forces;
+    chosen_ = pfv::CouplingChoice::explicit_step;
   else if (settings_.options.shear_viscous)  // which have no implicit step
-    chosen_ = PfvCoupling::staged;
+    chosen_ = pfv::CouplingChoice::staged;
   else
     chosen_ = cheaper(ratio, steps, grains_.masses().size());
 }
@@ -101,11 +93,11 @@ void FixPfv::step_flow() {
   const double before = flow_->strain();
   const std::int64_t network = flow_->retriangulations();
   switch (chosen_) {
-    case PfvCoupling::staged: take_staged(true); break;
-    case PfvCoupling::implicit: take_implicit(true); break;
+    case pfv::CouplingChoice::staged: take_staged(true); break;
+    case pfv::CouplingChoice::implicit: take_implicit(true); break;
     default: flow_->step(grains_.packing(), elapsed_);
   }
-  if (settings_.coupling != PfvCoupling::automatic) return;
+  if (settings_.steps.coupling != pfv::CouplingChoice::automatic) return;
   const bool kept = network == flow_->retriangulations();
   const bool first = strain_of_a_step_ == 0.0;
   strain_of_a_step_ = flow_->strain() - (kept ? before : 0.0);
@@ -117,9 +109,9 @@ void FixPfv::step_flow() {
 void FixPfv::evaluate_flow() {
   strain_of_a_step_ = 0.0;
   choose_coupling();
-  if (chosen_ == PfvCoupling::staged)
+  if (chosen_ == pfv::CouplingChoice::staged)
     take_staged(false);
-  else if (chosen_ == PfvCoupling::implicit)
+  else if (chosen_ == pfv::CouplingChoice::implicit)
     take_implicit(false);
 }
 
@@ -136,7 +128,7 @@ double FixPfv::estimated_limit() const {
 
 /// Says where the time step stands, at the beginning of a run; rank 0.
 void FixPfv::check_time_step() {
-  if (!settings_.time_step_check && !needs_forces()) return;
+  if (!settings_.steps.time_step_check && !needs_forces()) return;
   const double limit = time_step_limit();
   const double ratio = flow_step() / limit;
   const auto pistons = std::count_if(pistons_.begin(), pistons_.end(), [](const pfv::Piston& one) {
@@ -147,20 +139,20 @@ void FixPfv::check_time_step() {
                 "Fix pfv (id %s): limit of the explicit coupling %.4g s (papers' pi rho d^2/(1200 "
                 "mu): %.4g s), flow step %.4g s, ratio %.4g, pistons %d, %s coupling, stages %d\n",
                 id, limit, estimated_limit(), flow_step(), ratio, static_cast<int>(pistons),
-                name_of(chosen_), flow_->stages());
+                pfv::name_of(chosen_), flow_->stages());
   print(text);
-  if (settings_.fluid.bulk_modulus && pistons > 0 && settings_.couple_every > 1) {
+  if (settings_.fluid.bulk_modulus && pistons > 0 && settings_.steps.couple_every > 1) {
     std::snprintf(text, sizeof text,
                   "Fix pfv (id %s): a compressible fluid whose pressure is held over %d steps drives a piston "
                   "(servo) on at any time step; use `couple_every 1` or `couple_every auto`",
-                  id, settings_.couple_every);
+                  id, settings_.steps.couple_every);
     error->warning(FLERR, text);
   }
-  if (needs_forces() || ratio <= settings_.safety) return;
+  if (needs_forces() || ratio <= settings_.steps.safety) return;
   std::snprintf(text, sizeof text,
                 "Fix pfv (id %s): the flow step of %.4g s is %.4g times the limit of the explicit "
                 "coupling; grains will shake. Use a time step below %.3g s%s",
-                id, flow_step(), ratio, settings_.safety * limit / settings_.couple_every,
+                id, flow_step(), ratio, settings_.steps.safety * limit / settings_.steps.couple_every,
                 rigid_bodies_ ? " (rigid bodies have no other coupling)"
                               : ", `coupling staged` or `coupling implicit`");
   error->warning(FLERR, text);
