@@ -318,8 +318,7 @@ void FixPfv::setup(int) {
     warn_of_empty_box();
     prepare_flow(box_);
     check_servos();
-    flow_->evaluate(grains_.packing(), flow_step());
-    evaluate_flow();
+    call_flow(flow_step(), false);
     if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
     check_time_step();
     if (interval_) interval_->restart();
@@ -361,7 +360,7 @@ void FixPfv::advance() {
     place_faces(box_);
     if (mean) grains_.use_mean_velocities(last_grains_, elapsed_);
     flow_->set_box(box_);
-    step_flow();
+    call_flow(elapsed_, true);
     if (mean || adapts()) last_grains_ = grains_.snapshot();
   });
   elapsed_ = 0.0;

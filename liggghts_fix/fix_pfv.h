@@ -98,16 +98,9 @@ class FixPfv : public Fix {
   void bind_coupling();
   bool needs_forces() const;
   double flow_step() const;  ///< s, between two flow steps of a run
-  void choose_coupling();
-  pfv::GrainDynamics dynamics() const { return grains_.dynamics(pistons_); }
   double time_step_limit();
-  void step_flow();
-  void evaluate_flow();
-  void take_staged(bool advance);
-  void take_implicit(bool advance);
-  double estimated_limit() const;
+  void call_flow(double dt, bool commit);
   void check_time_step();
-  void warn_of_small_grains(double limit);
   void check_servos();
   std::string swinging_servo(int face, const PfvServoGain& servo, double resistance,
                              double swing) const;
@@ -155,9 +148,6 @@ class FixPfv : public Fix {
   std::optional<pfv::Report> report_;
   std::optional<pfv::SolveInterval> interval_;
   PfvSnapshot last_grains_;
-  pfv::CouplingChoice chosen_ = pfv::CouplingChoice::explicit_step;
-  double strain_of_a_step_ = 0.0;  // of the last one, 0 before the first of a run
-  std::int64_t chosen_for_ = 0;  // retriangulations when the coupling was chosen
   bool cited_ = false;
 };
 

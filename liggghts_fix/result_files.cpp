@@ -137,7 +137,7 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
   const auto grains = [](const std::string& stem, std::int64_t s) {
     return stem + "_grains_" + std::to_string(s) + ".vtu";
   };
-  flow.write_fields(fluid(base, step));
+  pfv::write_fields(fluid(base, step), flow.fields());
   pfv::write_spheres(grains(base, step), packing, flow.forces(), sphere_fields(flow, packing));
   written_.push_back({step, flow.time()});
 

@@ -72,7 +72,7 @@ void FixPfv::check_servos() {
   // A servo that the fluid alone cannot bring to its target moves with vel_max until grains help, and
   // only then swings; grains that follow within a step leave less of the resistance than is known here.
   const bool reaches_target = gains[worst].kp <= 1.0 + swing;
-  if (swing > 1.0 && reaches_target && settings_.steps.coupling == pfv::CouplingChoice::explicit_step)
+  if (swing > 1.0 && reaches_target && settings_.steps.coupling == pfv::Coupling::explicit_step)
     throw pfv::InputError(text);
   error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + text).c_str());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_command.hpp"
 
-#include "coupling/phase_clock.hpp"
+#include "work/phase_clock.hpp"
 #include "face_arguments.hpp"
 #include "io/atomic_file.hpp"
 #include "pfv/pfv.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve_command.hpp"
 
-#include "coupling/grains.hpp"
-#include "coupling/phase_clock.hpp"
+#include "network/grains.hpp"
+#include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
 #include "pfv/darcy_grid.hpp"
 #include "pfv/io.hpp"
@@ -85,7 +85,7 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Pac
                    const Report& report) {
   if (request.forces) write_forces(*request.forces, packing, flow.forces());
   if (request.report) write_report(*request.report, report);
-  if (request.vtk) flow.write_fields(*request.vtk);
+  if (request.vtk) write_fields(*request.vtk, flow.fields());
 }
 
 /// The tensor stands in the report; without a gradient its error is worth a line all the same.

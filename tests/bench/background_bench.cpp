@@ -5,7 +5,7 @@
 // step itself and in the background, in turn. Times of a step, all rebuilds included: CPU time of the
 // thread that steps, which is what a run takes where the other core is idle, and wall time. No time passes
 // between the flow steps here, as that of the grains would.
-#include "coupling/phase_clock.hpp"
+#include "work/phase_clock.hpp"
 #include "pfv/dense_packing.hpp"
 #include "pfv/pfv.hpp"
 

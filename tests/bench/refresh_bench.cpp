@@ -4,8 +4,8 @@
 // A packing is compressed, each sphere also in a way of its own. For the moved spheres: the network as it
 // was, the same cells measured anew (centres, throats, conductances, S; numeric factor on the kept ordering),
 // and a new network. Errors beside the new network: flow rate and forces under a pressure difference.
-#include "coupling/grains.hpp"
-#include "coupling/phase_clock.hpp"
+#include "network/grains.hpp"
+#include "work/phase_clock.hpp"
 #include "network/cell_centres.hpp"
 #include "network/pore_boundaries.hpp"
 #include "network/pore_network.hpp"

@@ -4,6 +4,7 @@
 // with one line. Prints what happened to each kind and the number of every case that failed; status
 // 1 if any did. Case K of a seed is always the same: --first K --count 1 repeats it.
 #include "pfv/pfv.hpp"
+#include "support/long_steps.hpp"
 #include "support/adversarial.hpp"
 
 #include <algorithm>
@@ -257,9 +258,9 @@ void run_flow(Case& c, Outcome& outcome) {
   for (int step = 0; step < 3; ++step) {
     c.packing.positions += c.dt * c.packing.velocities;
     if (c.staged)
-      flow.step_staged(c.packing.view(), c.dt, grains);
+      step_staged(flow, c.packing.view(), c.dt, grains);
     else if (c.implicit)
-      flow.step_implicit(c.packing.view(), c.dt, grains);
+      step_implicit(flow, c.packing.view(), c.dt, grains);
     else
       flow.step(c.packing.view(), c.dt);
     check_result(c, flow, false, outcome);

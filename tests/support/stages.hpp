@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "coupling/grains.hpp"
+#include "network/grains.hpp"
 #include "network/pore_boundaries.hpp"
 #include "network/pore_network.hpp"
 #include "physics/conductances.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compressible pore fluid: V^f / (K_f dt) (p - p_old) = - dV/dt + inflow, pore by pore.
-#include "coupling/built_network.hpp"
+#include "step/built_network.hpp"
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pressures at places, over planes, and fluxes of throats.
-#include "coupling/flow_data.hpp"
 #include "pfv/pfv.hpp"
+#include "results/network_report.hpp"
+#include "step/network_builder.hpp"
+#include "step/step_scheme.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
 
@@ -76,15 +78,24 @@ TEST(Fields, ThroatFluxesLeaveEachInnerPoreBalanced) {
 /// Mass error of a steady flow after an error in each unknown pressure.
 double mass_error_after(double error) {
   const auto packing = data_packing("packing_500.csv");
-  pfv::FlowData flow;
-  flow.box = upward_box(pfv::Wall::no_slip);
-  flow.fluid = viscosity_one();
-  flow.team = std::make_shared<pfv::Team>(1);
-  flow.compute(packing.view(), 0.0, false);
-  for (std::size_t p = 0; p < flow.built->unknowns.of_pore.size(); ++p)
-    if (flow.built->unknowns.of_pore[p] != pfv::Unknowns::imposed)
-      flow.relative_pressures[static_cast<Eigen::Index>(p)] *= 1.0 + error;
-  return std::abs(pfv::make_report(flow).mass_error);
+  const pfv::Box box = upward_box(pfv::Wall::no_slip);
+  const pfv::Fluid fluid = viscosity_one();
+  const pfv::Options options;
+  const auto team = std::make_shared<pfv::Team>(1);
+  const pfv::Problem problem{box, fluid, options, team};
+  pfv::WorkRecord work;
+  const auto built = pfv::derive_network(packing.view(), problem, work);
+  pfv::factor_pressures(*built, problem, 0.0, work);
+  pfv::Solution solution;
+  solution.box = box;
+  solution.growth = pfv::growth_of(box, built->grains.spheres.edges, 0.0);
+  pfv::ExplicitStep().find({*built, problem, packing.view(), nullptr, work}, solution);
+  for (std::size_t p = 0; p < built->unknowns.of_pore.size(); ++p)
+    if (built->unknowns.of_pore[p] != pfv::Unknowns::imposed)
+      solution.relative_pressures[static_cast<Eigen::Index>(p)] *= 1.0 + error;
+  std::int64_t solves = 0;
+  const pfv::Balance balance = pfv::balance_of(*built, solution, solves);
+  return std::abs(pfv::network_report(*built, problem, solution, balance, solves).mass_error);
 }
 
 TEST(Fields, FluxesAreCorrectedForRoundOffAlone) {

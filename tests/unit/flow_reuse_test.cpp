@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a Flow does again at a step and what it keeps, read from its counts.
-#include "coupling/built_network.hpp"
+#include "step/built_network.hpp"
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/drained_piston.hpp"

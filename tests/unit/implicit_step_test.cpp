@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit coupling: pressures and velocities of a step found together.
 #include "pfv/pfv.hpp"
+#include "support/long_steps.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
 
@@ -110,7 +111,7 @@ struct Sample {
   }
   double speed() const { return packing.velocities.norm(); }
   const pfv::Forces& implicit(double dt) {
-    return flow.step_implicit(packing.view(), dt, dynamics());
+    return step_implicit(flow, packing.view(), dt, dynamics());
   }
   struct Velocities {
     Eigen::Matrix3Xd linear, angular;
@@ -249,7 +250,7 @@ TEST(ImplicitStep, EvaluatingItAdvancesNothing) {
   Sample run;
   const double dt = 50.0 * run.limit();
   const Eigen::Matrix3Xd evaluated =
-      run.flow.evaluate_implicit(run.packing.view(), dt, run.dynamics()).total;
+      try_implicit(run.flow, run.packing.view(), dt, run.dynamics()).total;
   EXPECT_EQ(run.flow.time(), 0.0);
   EXPECT_EQ(run.flow.strain(), 0.0);
   EXPECT_EQ(run.implicit(dt).total, evaluated);
@@ -354,7 +355,7 @@ TEST(PistonStep, ImplicitAndStagedReachTheVelocityAtWhichTheDragBearsTheLoad) {
       if (implicit)
         run.implicit(dt);
       else
-        run.flow.step_staged(run.packing.view(), dt, run.dynamics());
+        step_staged(run.flow, run.packing.view(), dt, run.dynamics());
       const double change = dt / mass * (load + run.force());
       if (implicit) {
         const double weighted = velocity + theta * change;
@@ -389,7 +390,7 @@ TEST(PistonStep, AReferencePressureActsOnThePiston) {
 TEST(ImplicitStep, RefusesMissingForcesAndImpossibleMasses) {
   Sample run;
   const pfv::GrainDynamics none{{run.masses.data(), run.masses.size()}, {nullptr, 3, 0}, {}};
-  expect_line(refusal([&] { run.flow.step_implicit(run.packing.view(), 1.0, none); }),
+  expect_line(refusal([&] { step_implicit(run.flow, run.packing.view(), 1.0, none); }),
                        "other force");
   run.masses[2] = 0.0;
   expect_line(refusal([&] { run.implicit(1.0); }), "mass");

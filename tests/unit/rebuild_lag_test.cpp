@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Networks that are built in the background: when they are taken up, and that nothing depends on
 // when the thread is done.
-#include "coupling/phase_clock.hpp"
+#include "work/phase_clock.hpp"
 #include "pfv/dense_packing.hpp"
 #include "pfv/pfv.hpp"
+#include "support/long_steps.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
 
@@ -73,7 +74,7 @@ const Forces& staged_step(Flow& flow, const PackingArrays& packing) {
   GrainDynamics grains;
   new (&grains.masses) Eigen::Map<const Eigen::VectorXd>(masses.data(), masses.size());
   new (&grains.other_forces) Eigen::Map<const Eigen::Matrix3Xd>(others.data(), 3, others.cols());
-  return flow.step_staged(packing.view(), dt, grains);
+  return support::step_staged(flow, packing.view(), dt, grains);
 }
 
 /// The forces of each step of a sinking column.
@@ -278,7 +279,7 @@ TEST(RebuildLag, RefusesWhatCannotRunBesideASteppingThread) {
 
   const Column column;
   Flow flow(column.box, Fluid{}, lagging());
-  EXPECT_THROW(flow.step_implicit(column.packing.view(), dt, {}), InputError);
+  EXPECT_THROW(support::step_implicit(flow, column.packing.view(), dt, {}), InputError);
 }
 
 // The BLAS below CHOLMOD need not bear two threads.

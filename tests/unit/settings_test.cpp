@@ -50,7 +50,7 @@ TEST(Names, EachOptionReadsBackAsItself) {
   reads_back<Partition>();
   reads_back<SolverKind>();
   reads_back<OrderingKind>();
-  reads_back<CouplingChoice>();
+  reads_back<Coupling>();
 }
 
 TEST(Names, AnUnknownNameIsRefusedWithTheListOfThoseThatExist) {
@@ -217,11 +217,11 @@ TEST(SettingsTable, NamesTheKeywordOfABadWord) {
 TEST(CheckOptions, OfAStepRefusesWhatItDoesNotHave) {
   pfv::Options lagging;
   lagging.rebuild_lag = 3;
-  expect_line(refusal([&] { pfv::check(lagging, pfv::CouplingChoice::implicit); }), "masses of the grains");
-  EXPECT_NO_THROW(pfv::check(lagging, pfv::CouplingChoice::staged));
+  expect_line(refusal([&] { pfv::check(lagging, pfv::Coupling::implicit); }), "masses of the grains");
+  EXPECT_NO_THROW(pfv::check(lagging, pfv::Coupling::staged));
   pfv::Options sheared;
   sheared.shear_viscous = true;
-  expect_line(refusal([&] { pfv::check(sheared, pfv::CouplingChoice::implicit); }), "no implicit step");
+  expect_line(refusal([&] { pfv::check(sheared, pfv::Coupling::implicit); }), "no implicit step");
 }
 
 }  // namespace

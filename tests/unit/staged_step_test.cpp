@@ -2,6 +2,7 @@
 // Staged (Runge-Kutta-Chebyshev) coupling: grains that only the fluid brakes.
 #include "pfv/pfv.hpp"
 #include "physics/chebyshev_stages.hpp"
+#include "support/long_steps.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
 #include "pfv/dense_packing.hpp"
@@ -106,7 +107,7 @@ TEST(StagedStep, ExplicitStepGrowsBeyondTheLimitAndStagedStepDoesNot) {
   Braked run;
   double last = run.energy();
   for (int step = 0; step < 10; ++step) {
-    run.move(run.flow.step_staged(run.packing.view(), dt, run.dynamics()), dt);
+    run.move(support::step_staged(run.flow, run.packing.view(), dt, run.dynamics()), dt);
     EXPECT_LT(run.energy(), last);
     last = run.energy();
   }
@@ -119,7 +120,7 @@ TEST(StagedStep, NoMotionIsFedHoweverLongTheStepIs) {
     const double dt = ratio * run.limit();
     double last = run.energy();
     for (int step = 0; step < 40; ++step) {
-      run.move(run.flow.step_staged(run.packing.view(), dt, run.dynamics()), dt);
+      run.move(support::step_staged(run.flow, run.packing.view(), dt, run.dynamics()), dt);
       EXPECT_LE(run.energy(), last) << ratio << ' ' << step;
       last = run.energy();
     }
@@ -158,8 +159,8 @@ TEST(StagedStep, OverlapsByMostOfTheRadiiAreBraked) {
     };
     const double start = energy();
     for (int step = 0; step < 20; ++step) {
-      const Forces& forces = flow.step_staged(
-          grains.packing.view(), dt,
+      const Forces& forces = support::step_staged(
+          flow, grains.packing.view(), dt,
           {{grains.masses.data(), grains.masses.size()}, {grains.none.data(), 3, grains.none.cols()}});
       for (int k = 0; k < v.cols(); ++k) {
         v.col(k) += dt / grains.masses[k] * forces.total.col(k);
@@ -177,7 +178,7 @@ TEST(StagedStep, BelowTheLimitItIsThePlainStep) {
   const double dt = 0.5 * plain.limit();
   const Eigen::Matrix3Xd a = plain.flow.step(plain.packing.view(), dt).total;
   const Eigen::Matrix3Xd b =
-      staged.flow.step_staged(staged.packing.view(), dt, staged.dynamics()).total;
+      support::step_staged(staged.flow, staged.packing.view(), dt, staged.dynamics()).total;
   EXPECT_EQ(a, b);
   EXPECT_EQ(staged.flow.stages(), 1);
 }
@@ -186,17 +187,17 @@ TEST(StagedStep, EvaluatingItAdvancesNothing) {
   Braked run;
   const double dt = 50.0 * run.limit();
   const Eigen::Matrix3Xd evaluated =
-      run.flow.evaluate_staged(run.packing.view(), dt, run.dynamics()).total;
+      support::try_staged(run.flow, run.packing.view(), dt, run.dynamics()).total;
   EXPECT_GT(run.flow.stages(), 1);
   EXPECT_EQ(run.flow.time(), 0.0);
   EXPECT_EQ(run.flow.strain(), 0.0);
-  EXPECT_EQ(run.flow.step_staged(run.packing.view(), dt, run.dynamics()).total, evaluated);
+  EXPECT_EQ(support::step_staged(run.flow, run.packing.view(), dt, run.dynamics()).total, evaluated);
   EXPECT_EQ(run.flow.time(), dt);
 }
 
 TEST(StagedStep, ForcesAndVolumesOfTheStepBalance) {
   Braked run;
-  run.flow.step_staged(run.packing.view(), 50.0 * run.limit(), run.dynamics());
+  support::step_staged(run.flow, run.packing.view(), 50.0 * run.limit(), run.dynamics());
   const Report report = run.flow.report();
   EXPECT_LT(std::abs(report.mass_error), 1e-14);
   EXPECT_LT(report.force_balance_error, 1e-13);
@@ -209,7 +210,7 @@ TEST(StagedStep, FirstOrderTowardsTheFineExplicitSolution) {
     const double limit = run.limit();
     for (int step = 0; step < static_cast<int>(std::lround(4.0 / ratio)); ++step) {
       const double dt = ratio * limit;
-      run.move(staged ? run.flow.step_staged(run.packing.view(), dt, run.dynamics())
+      run.move(staged ? support::step_staged(run.flow, run.packing.view(), dt, run.dynamics())
                       : run.flow.step(run.packing.view(), dt),
                dt);
     }
@@ -227,7 +228,7 @@ TEST(StagedStep, AGrainOfInfiniteMassKeepsItsVelocity) {
   run.masses[3] = std::numeric_limits<double>::infinity();
   const double dt = 50.0 * run.limit();
   const Eigen::Matrix3Xd force =
-      run.flow.step_staged(run.packing.view(), dt, run.dynamics()).total;
+      support::step_staged(run.flow, run.packing.view(), dt, run.dynamics()).total;
   EXPECT_TRUE(force.allFinite());
   EXPECT_GT(force.col(3).norm(), 0.0);
 }
@@ -235,7 +236,7 @@ TEST(StagedStep, AGrainOfInfiniteMassKeepsItsVelocity) {
 TEST(StagedStep, RefusesMissingForces) {
   Braked run;
   GrainDynamics dynamics{{run.masses.data(), run.masses.size()}, {nullptr, 3, 0}};
-  EXPECT_THROW(run.flow.step_staged(run.packing.view(), 1.0, dynamics), InputError);
+  EXPECT_THROW(support::step_staged(run.flow, run.packing.view(), 1.0, dynamics), InputError);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which strain of the pores leads to a new network.
-#include "coupling/built_network.hpp"
+#include "step/built_network.hpp"
 #include "pfv/pfv.hpp"
 #include "support/boxes.hpp"
 #include "support/drained_piston.hpp"

@@ -32,14 +32,8 @@ class DarcyGrid final : public FlowModel {
   DarcyGrid(DarcyGrid&&) noexcept;
   DarcyGrid& operator=(DarcyGrid&&) noexcept;
 
-  const Forces& step(const Packing& packing, double dt) override;
-  const Forces& evaluate(const Packing& packing, double dt = 0.0) override;
-  /// Throw InputError: there are no stages here.
-  const Forces& step_staged(const Packing& packing, double dt,
-                            const GrainDynamics& grains) override;
-  const Forces& evaluate_staged(const Packing& packing, double dt,
-                                const GrainDynamics& grains) override;
-  int stages() const override { return 1; }
+  /// Automatic coupling is explicit here; others are refused.
+  const Forces& advance(const Packing& packing, double dt, const Step& step = {}) override;
   void rebuild() override;
 
   void set_box(const Box& box) override;
@@ -77,8 +71,8 @@ class DarcyGrid final : public FlowModel {
   Eigen::Vector3d lower_corner() const;  ///< m, of the first cell
 
   Report report() const override;
-  /// Hexahedra with pressure, porosity, permeability and velocity.
-  void write_fields(const std::string& path) const override;
+  /// Boxes with pressure, porosity, permeability and velocity.
+  FieldGrid fields() const override;
   const char* field_name() const override { return "cells"; }
 
  private:

@@ -10,8 +10,6 @@
 
 namespace pfv {
 
-struct FlowData;
-
 /// Of the fluid between two planes, weighted with the pores' volume.
 struct SliceMeans {
   int pores = 0;
@@ -41,18 +39,9 @@ class Flow final : public FlowModel {
   Flow(Flow&&) noexcept;
   Flow& operator=(Flow&&) noexcept;
 
-  /// Advances time, strain and stored pressures.
-  const Forces& step(const Packing& packing, double dt) override;
-  const Forces& step_staged(const Packing& packing, double dt,
-                            const GrainDynamics& grains) override;
-  const Forces& evaluate_staged(const Packing& packing, double dt,
-                                const GrainDynamics& grains) override;
+  const Forces& advance(const Packing& packing, double dt, const Step& step = {}) override;
+  Coupling coupling() const override;
   int stages() const override;
-  const Forces& step_implicit(const Packing& packing, double dt,
-                              const GrainDynamics& grains) override;
-  const Forces& evaluate_implicit(const Packing& packing, double dt,
-                                  const GrainDynamics& grains) override;
-  const Forces& evaluate(const Packing& packing, double dt = 0.0) override;
 
   /// Discards the network; the next call triangulates anew. Stored pressures are carried over so that
   /// the sum of fluid volume times pressure is conserved.
@@ -125,11 +114,14 @@ class Flow final : public FlowModel {
   /// Cost: one pass over the network and, the first time after a triangulation, the exact union of
   /// the spheres.
   Report report() const override;
-  void write_fields(const std::string& path) const override;
+  /// Pores as points, a cell each (pressure, volume of the fluid, velocity), and throats as lines (conductance,
+  /// flux). Cost: as faces().
+  FieldGrid fields() const override;
   const char* field_name() const override { return "pores"; }
 
  private:
-  std::unique_ptr<FlowData> data_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace pfv

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pfv/box.hpp"
+#include "pfv/fields.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
 #include "pfv/packing.hpp"
@@ -54,6 +55,26 @@ struct GrainDynamics {
                                                            ///< keeps its spin
 };
 
+/// How to take a step.
+struct Step {
+  Coupling coupling = Coupling::explicit_step;
+  const GrainDynamics* dynamics = nullptr;  ///< wanted by all but explicit steps
+  /// false: nothing is advanced: a steady state, the setup of a run, a timing. With automatic coupling a run
+  /// begins so.
+  bool commit = true;
+  // of automatic coupling
+  double safety = 1.0;   ///< part of the explicit limit that explicit steps may reach
+  std::string obstacle;  ///< what the host has against other than explicit steps: thrown where they are needed
+
+  static Step with(Coupling coupling, const GrainDynamics& dynamics) {
+    return {coupling, &dynamics, true, 1.0, {}};
+  }
+  static Step trial() { return {Coupling::explicit_step, nullptr, false, 1.0, {}}; }
+  static Step trial(Coupling coupling, const GrainDynamics& dynamics) {
+    return {coupling, &dynamics, false, 1.0, {}};
+  }
+};
+
 /// A fluid between moving grains, as a host program sees it: grains in, forces out. `Flow` (pore-scale
 /// finite volumes) and `DarcyGrid` (a coarse grid) are the two that there are; a host that needs no
 /// more than this holds either.
@@ -64,37 +85,31 @@ class FlowModel {
  public:
   virtual ~FlowModel() = default;
 
-  /// Advances the fluid by `dt` > 0 (s) to the instant at which the grains are at `packing`.
-  /// `packing.velocities` are the mean velocities over dt (method: backward Euler, thesis eq. 4.8).
-  /// The result is valid until the next call.
-  virtual const Forces& step(const Packing& packing, double dt) = 0;
-  /// The same solve without advancing anything: a steady state, the setup of a run, a repeated
-  /// timing. `dt` is needed (> 0) only for a compressible fluid.
-  virtual const Forces& evaluate(const Packing& packing, double dt = 0.0) = 0;
+  /// The forces of a step of `dt` (s, > 0; with `commit` false 0 means a steady state). A committed step advances
+  /// the fluid by dt:
+  ///
+  /// * explicit: to the instant at which the grains are at `packing`, whose velocities are the means over dt
+  ///   (backward Euler, thesis eq. 4.8). Stable below `time_step_limit`.
+  /// * staged: `packing.velocities` are those of the instant from which the host will apply the forces over dt
+  ///   (leapfrog: v(n+1/2)); the drag is integrated over the step in Chebyshev sub-stages on the kept factor, the
+  ///   other forces held, and the forces returned are their mean. Stable where the contacts are; below the limit
+  ///   it is explicit. Cost: about 1.6 sqrt(dt / limit) solves.
+  /// * implicit: the same velocities; pressures and the velocities that follow from all forces are found together
+  ///   with the denser matrix A = G + theta dt S^T M^-1 S, factored anew when a mass or dt changes. Continuity
+  ///   holds exactly for v(n+1/2) + theta (v(n+3/2) - v(n+1/2)), so that over many steps the volumes of fluid and
+  ///   grains go together. Cost: one solve of A.
+  ///
+  /// The result is valid until the next call. Throws InputError for a coupling that the model does not have.
+  virtual const Forces& advance(const Packing& packing, double dt, const Step& step = {}) = 0;
+  /// The coupling and the sub-stages of the last call.
+  virtual Coupling coupling() const { return Coupling::explicit_step; }
+  virtual int stages() const { return 1; }
 
-  /// The same advance where dt may exceed `time_step_limit`: the drag of the fluid is integrated over
-  /// the step in Chebyshev sub-stages on the kept factor, with the other forces held, and the forces
-  /// returned are their mean over the step. `packing.velocities` must be those of the instant from
-  /// which the host will apply the forces over dt (leapfrog: v(n+1/2)). Below the limit this is
-  /// `step`. Cost: about 1.6 sqrt(dt / limit) solves a step. Verwer 1996, eqs. of the first-order RKC.
-  virtual const Forces& step_staged(const Packing& packing, double dt,
-                                    const GrainDynamics& grains) = 0;
-  /// The same without advancing anything: the setup of a run.
-  virtual const Forces& evaluate_staged(const Packing& packing, double dt,
-                                        const GrainDynamics& grains) = 0;
-  /// Sub-stages of the last step.
-  virtual int stages() const = 0;
-
-  /// The same advance at any dt for one solve with the denser matrix A = G + theta dt S^T M^-1 S:
-  /// pressures and the velocities that follow from all forces are found together (theta method).
-  /// Continuity holds exactly for v(n+1/2) + theta (v(n+3/2) - v(n+1/2)), so that over many steps the
-  /// volumes of fluid and grains go together. Stable where the contacts are. What `grains` says of masses and
-  /// forces must be what the host integrates; A is factored anew when a mass or dt changes. Throws InputError
-  /// for a model that has no such step.
-  virtual const Forces& step_implicit(const Packing& packing, double dt, const GrainDynamics& grains);
-  /// The same without advancing anything: the setup of a run.
-  virtual const Forces& evaluate_implicit(const Packing& packing, double dt,
-                                          const GrainDynamics& grains);
+  /// An explicit step, and the same without advancing anything.
+  const Forces& step(const Packing& packing, double dt) { return advance(packing, dt); }
+  const Forces& evaluate(const Packing& packing, double dt = 0.0) {
+    return advance(packing, dt, Step::trial());
+  }
 
   /// Discards what was derived from the packing; the next call makes it anew.
   virtual void rebuild() = 0;
@@ -136,8 +151,8 @@ class FlowModel {
 
   /// Balances, permeability, counts, times of everything done so far.
   virtual Report report() const = 0;
-  /// The fields of the last call as a VTK unstructured grid (.vtu). Throws FileError.
-  virtual void write_fields(const std::string& path) const = 0;
+  /// The fields of the last call, to be drawn or written.
+  virtual FieldGrid fields() const = 0;
   /// What the cells of that grid are: "pores" or "cells".
   virtual const char* field_name() const = 0;
 };

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "pfv/error.hpp"
-#include "pfv/flow.hpp"
+#include "pfv/fields.hpp"
+#include "pfv/flow_model.hpp"
 #include "pfv/packing.hpp"
 #include "pfv/report.hpp"
 
@@ -25,10 +26,6 @@ void write_forces(const std::string& path, const Packing& packing, const Forces&
 
 /// The report as JSON, keys as in `Report`; absent values are null.
 void write_report(const std::string& path, const Report& report);
-
-/// Pores and throats as a VTK unstructured grid (.vtu, appended binary): a vertex cell a pore
-/// (pressure, volume of its fluid), a line cell a throat (conductance, flux).
-void write_network(const std::string& path, const Flow& flow);
 
 /// Further fields of spheres, one column a sphere of the packing; an empty one is not written.
 struct SphereFields {

@@ -87,6 +87,19 @@ struct Names<VolumeRates> {
        {VolumeRates::geometric, "geometric"}}};
 };
 
+/// How the pressures of a step are found. `explicit_step`: from the velocities given. `staged`: the drag is
+/// integrated over the step in sub-stages. `implicit`: together with the velocities that follow. `automatic`:
+/// what is cheapest and stable, chosen for each network.
+enum class Coupling { explicit_step, staged, implicit, automatic };
+template <>
+struct Names<Coupling> {
+  static constexpr const char* what = "coupling";
+  static constexpr std::array<Named<Coupling>, 4> all{{{Coupling::explicit_step, "explicit"},
+                                                       {Coupling::staged, "staged"},
+                                                       {Coupling::implicit, "implicit"},
+                                                       {Coupling::automatic, "auto"}}};
+};
+
 /// What to do with a grain whose centre is not inside the flow box.
 enum class OutsideGrains { refuse, leave_out };
 template <>
@@ -109,8 +122,6 @@ struct Names<StrainMeasure> {
        {StrainMeasure::mean, "mean"}}};
 };
 
-constexpr double default_tolerance = 1e-10;
-
 struct Options {
   ConductanceLaw conductance = ConductanceLaw::open_throat;
   Partition partition = Partition::signed_angles;
@@ -125,7 +136,7 @@ struct Options {
   Precision precision = Precision::full;
   /// Where cg and gauss_seidel end: residual over right-hand side (2-norms), in (0, 1). Direct solvers
   /// have none and refuse another than this.
-  double tolerance = default_tolerance;
+  double tolerance = 1e-10;
   /// Threads that share a step, 1 ... 64. They change no byte of any result.
   int threads = 1;
   OutsideGrains outside = OutsideGrains::refuse;
@@ -145,23 +156,9 @@ struct Options {
                                ///< 6.29-6.30); explicit and staged steps, no periodic axes
 };
 
-/// How the fluid's forces act on the grains of a run. `explicit_step`: those of the velocities at the beginning of
-/// the step. `staged`: the drag is integrated over the step. `implicit`: those of the velocities at its end.
-/// `automatic`: what is cheapest and stable, chosen for each network.
-enum class CouplingChoice { explicit_step, staged, implicit, automatic };
-template <>
-struct Names<CouplingChoice> {
-  static constexpr const char* what = "coupling";
-  static constexpr std::array<Named<CouplingChoice>, 4> all{
-      {{CouplingChoice::explicit_step, "explicit"},
-       {CouplingChoice::staged, "staged"},
-       {CouplingChoice::implicit, "implicit"},
-       {CouplingChoice::automatic, "auto"}}};
-};
-
 /// When and how a host that moves the grains asks for forces.
 struct StepSettings {
-  CouplingChoice coupling = CouplingChoice::explicit_step;
+  Coupling coupling = Coupling::explicit_step;
   int couple_every = 1;  ///< steps between two solves of the flow, > 0
   /// In its place, by default: as the loads change, with this error, as a part of the load. Absent where each
   /// step or each N-th is solved. Explicit steps on a pore network without rebuild_lag.
@@ -171,6 +168,6 @@ struct StepSettings {
 };
 
 /// Throws InputError for options that are unknown or contradict each other, or a step of this kind.
-void check(const Options& options, CouplingChoice step = CouplingChoice::explicit_step);
+void check(const Options& options, Coupling step = Coupling::explicit_step);
 
 }  // namespace pfv

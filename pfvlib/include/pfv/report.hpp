@@ -28,6 +28,9 @@ struct OpeningResult {
 /// How often each piece of work was done since the Flow was made: a scene pays for nothing else.
 struct Counts {
   std::int64_t triangulate = 0, order = 0, factor = 0, solve = 0, force_matrix = 0, volume_rate = 0;
+  /// Solves beside `solve`, which counts right-hand sides of steps: for what those left (refinement, balances),
+  /// for limits of the time step, and for permeability tensors and viscosity matrices.
+  std::int64_t correction_solve = 0, limit_solve = 0, query_solve = 0;
   std::int64_t background = 0;  ///< networks that were made beside the steps (Options::rebuild_lag)
   /// Of the present network: throats whose law needed the rule for phi <= 0, gamma <= 0 or A_f <= 0;
   /// tetrahedra that were merged into another pore; pores at rest without any way to a pressure.
@@ -87,9 +90,12 @@ void for_each_entry(const Counts& counts, const See& see) {
   see("order", counts.order);
   see("factor", counts.factor);
   see("solve", counts.solve);
+  see("correction_solve", counts.correction_solve);
+  see("limit_solve", counts.limit_solve);
+  see("query_solve", counts.query_solve);
+  see("background", counts.background);
   see("force_matrix", counts.force_matrix);
   see("volume_rate", counts.volume_rate);
-  see("background", counts.background);
   see("degenerate_throats", counts.degenerate_throats);
   see("merged_pores", counts.merged_pores);
   see("pinned_pores", counts.pinned_pores);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pfv/box.hpp"
-#include "pfv/packing.hpp"
+#include "pfv/flow_model.hpp"
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 namespace pfv {
@@ -18,6 +18,31 @@ double viscous_time_step(double mass, const Eigen::Matrix3d& viscosity);
 double contact_time_step(double mass, const Eigen::Matrix3d& stiffness);
 /// pi rho d²/(1200 mu) = M/(400 mu r), s: eq. 4.20, which is eq. 4.15 with V = 400 mu d.
 double estimated_time_step(double mass, double radius, double viscosity);
+
+/// Where the time step of a run stands.
+struct TimeStepCheck {
+  double limit;     ///< of the explicit coupling, s
+  double estimate;  ///< the papers', of the grain that is worst off, s
+  double step;      ///< between two solves, s
+  int pistons;
+  Coupling coupling;
+  int stages;
+  bool compressible;
+
+  double ratio() const { return step / limit; }
+  /// "limit of the explicit coupling ...": one line.
+  std::string text() const;
+};
+
+/// Of a model that holds a result. `masses` in kg, one a sphere of `packing`; `step`, s, between two solves.
+/// Cost: that of FlowModel::time_step_limit.
+TimeStepCheck check_time_step(FlowModel& flow, const Packing& packing, const Eigen::VectorXd& masses,
+                              const std::array<Piston, 6>& pistons, double step);
+
+/// What a host that solves every `held` of its steps should be warned of, a line each. `safety`: part of the limit
+/// that a step may reach; `remedy`: what it can take instead of a shorter step, or why there is nothing.
+std::vector<std::string> warnings_of(const TimeStepCheck& check, int held, double safety,
+                                     const std::string& remedy);
 
 /// Linear springs of all contacts, N/m.
 struct ContactStiffness {

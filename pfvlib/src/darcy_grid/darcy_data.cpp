@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "darcy_grid/darcy_data.hpp"
 
-#include "coupling/phase_clock.hpp"
+#include "work/phase_clock.hpp"
 #include "darcy_grid/kozeny_carman.hpp"
 #include "network/pore_boundaries.hpp"
 #include "parallel/team.hpp"

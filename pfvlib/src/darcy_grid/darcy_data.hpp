@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "coupling/grains.hpp"
+#include "network/grains.hpp"
 #include "darcy_grid/grain_drag.hpp"
 #include "darcy_grid/grid_flow.hpp"
 #include "pfv/darcy_grid.hpp"

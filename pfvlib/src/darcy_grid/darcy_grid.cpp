@@ -4,6 +4,7 @@
 #include "darcy_grid/darcy_data.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
+#include "problem/box_changes.hpp"
 
 #include <cmath>
 #include <limits>
@@ -22,22 +23,6 @@ void refuse_if(bool given, const char* what) {
 void refuse_what_has_no_cells(const Box& box) {
   refuse_if(box.any_periodic(), "periodic axes");
   refuse_if(!box.regions.empty(), "regions");
-}
-
-bool same_boundaries(const Box& a, const Box& b) {
-  if (a.patches.size() != b.patches.size()) return false;
-  for (std::size_t i = 0; i < a.patches.size(); ++i)
-    if (a.patches[i].face != b.patches[i].face ||
-        a.patches[i].rectangle != b.patches[i].rectangle ||
-        a.patches[i].boundary.kind != b.patches[i].boundary.kind)
-      return false;
-  for (int f = 0; f < 6; ++f)
-    if (a.faces[f].boundary.kind != b.faces[f].boundary.kind) return false;
-  return true;
-}
-
-[[noreturn]] void refuse_stages() {
-  throw InputError("darcy_grid has no staged step: take a smaller time step, or the model pfv");
 }
 
 }  // namespace
@@ -65,22 +50,12 @@ DarcyGrid::~DarcyGrid() = default;
 DarcyGrid::DarcyGrid(DarcyGrid&&) noexcept = default;
 DarcyGrid& DarcyGrid::operator=(DarcyGrid&&) noexcept = default;
 
-const Forces& DarcyGrid::step(const Packing& packing, double dt) {
-  if (!(dt > 0.0) || !std::isfinite(dt))
-    throw InputError("the time step is " + std::to_string(dt) + " s; it must be > 0 and finite");
-  return data_->compute(packing, data_->time + dt, true);
-}
-
-const Forces& DarcyGrid::evaluate(const Packing& packing, double) {
-  return data_->compute(packing, data_->time, false);
-}
-
-const Forces& DarcyGrid::step_staged(const Packing&, double, const GrainDynamics&) {
-  refuse_stages();
-}
-
-const Forces& DarcyGrid::evaluate_staged(const Packing&, double, const GrainDynamics&) {
-  refuse_stages();
+const Forces& DarcyGrid::advance(const Packing& packing, double dt, const Step& step) {
+  if (step.coupling == Coupling::staged || step.coupling == Coupling::implicit)
+    throw InputError(std::string("darcy_grid has no ") + name_of(step.coupling) +
+                     " step: take a smaller time step, or the model pfv");
+  require_time_step(dt, step.commit);
+  return data_->compute(packing, step.commit ? data_->time + dt : data_->time, step.commit);
 }
 
 void DarcyGrid::rebuild() { data_->stale = true; }
@@ -88,7 +63,7 @@ void DarcyGrid::rebuild() { data_->stale = true; }
 void DarcyGrid::set_box(const Box& box) {
   check(box);
   refuse_what_has_no_cells(box);
-  if (!same_boundaries(data_->box, box)) data_->stale = true;
+  if (!same_kinds(data_->box, box)) data_->stale = true;
   data_->box = box;
 }
 

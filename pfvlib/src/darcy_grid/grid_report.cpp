@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coupling/balance_terms.hpp"
 #include "darcy_grid/darcy_data.hpp"
-#include "network/pore_boundaries.hpp"
+#include "results/balance_terms.hpp"
 
 #include <cmath>
 
@@ -9,35 +8,14 @@ namespace pfv {
 
 namespace {
 
-/// The faces of cells that each patch took.
-std::vector<OpeningResult> openings(const DarcyData& flow) {
-  std::vector<OpeningResult> results(flow.solved_box.patches.size());
-  for (std::size_t patch = 0; patch < results.size(); ++patch) {
-    OpeningResult& result = results[patch];
-    const int boundary = 6 + static_cast<int>(patch);
-    result.name = boundary_name(flow.solved_box, boundary);
-    double sum = 0.0;
-    for (std::size_t f = 0; f < flow.built->faces.size(); ++f) {
-      if (flow.built->faces[f].boundary != boundary) continue;
-      ++result.pores;
-      result.flux += flow.fields.face_inflow[static_cast<Eigen::Index>(f)];
-      sum += flow.fields.face_pressure[static_cast<Eigen::Index>(f)] + flow.reference;
-    }
-    if (result.pores > 0) result.pressure = sum / static_cast<double>(result.pores);
-  }
-  return results;
-}
-
-Totals boundary_totals(const DarcyData& flow) {
-  std::vector<double> of_boundary(boundary_count(flow.solved_box), 0.0);
-  Totals totals;
+std::vector<BoundaryPart> boundary_parts(const DarcyData& flow) {
+  std::vector<BoundaryPart> parts;
   for (std::size_t f = 0; f < flow.built->faces.size(); ++f) {
-    const double inflow = flow.fields.face_inflow[static_cast<Eigen::Index>(f)];
-    of_boundary[flow.built->faces[f].boundary] += inflow;
-    totals.gross += std::abs(inflow);
+    const auto i = static_cast<Eigen::Index>(f);
+    parts.push_back({flow.built->faces[f].boundary, flow.fields.face_inflow[i],
+                     flow.fields.face_pressure[i] + flow.reference});
   }
-  for (const double q : of_boundary) (q > 0.0 ? totals.inflow : totals.outflow) += std::abs(q);
-  return totals;
+  return parts;
 }
 
 std::optional<double> permeability(const DarcyData& flow, const Totals& totals) {
@@ -68,7 +46,8 @@ Report make_report(const DarcyData& flow) {
   report.porosity = built.porosity.mean();
   report.pore_volume = report.porosity * built.grid.volume() * built.grid.size();
   report.solid_area = built.overlaps.surface;
-  const Totals totals = boundary_totals(flow);
+  const std::vector<BoundaryPart> parts = boundary_parts(flow);
+  const Totals totals = totals_of(flow.solved_box, parts);
   report.inflow = totals.inflow;
   report.outflow = totals.outflow;
   report.volume_rate_sum = flow.rates.sum();
@@ -88,7 +67,7 @@ Report make_report(const DarcyData& flow) {
   report.conductance = "kozeny_carman";
   report.threads = flow.options.threads;
   report.faces = flow.faces;
-  report.openings = openings(flow);
+  report.openings = openings_of(flow.solved_box, parts);
   report.counts = flow.counts;
   report.seconds = flow.seconds;
   report.wall_seconds.total = flow.wall_total;

@@ -16,7 +16,11 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Motion = Matrix6Xd;
 using Loads = Matrix6Xd;
 
-inline Eigen::Index spheres_in(const Motion& motion) { return motion.cols() - 6; }
+inline constexpr Eigen::Index face_columns = static_cast<Eigen::Index>(all_faces.size());
+
+inline Eigen::Index spheres_in(const Motion& motion) { return motion.cols() - face_columns; }
+/// Zeros for so many spheres and the faces.
+inline Matrix6Xd no_motion(Eigen::Index spheres) { return Matrix6Xd::Zero(6, spheres + face_columns); }
 
 /// Motion of a face of `box`; the box's own corner may have moved on from `origin`.
 inline Vector6d motion_of(const FaceCondition& face, int axis, const Eigen::Vector3d& origin) {
@@ -28,10 +32,11 @@ inline Vector6d motion_of(const FaceCondition& face, int axis, const Eigen::Vect
   return motion;
 }
 
-/// Fills in the last six columns.
+/// Fills in the columns of the faces.
 inline void set_faces(Motion& motion, const Box& box, const Eigen::Vector3d& origin) {
-  for (int face = 0; face < 6; ++face)
-    motion.col(spheres_in(motion) + face) = motion_of(box.faces[face], face / 2, origin);
+  for (const Face face : all_faces)
+    motion.col(spheres_in(motion) + static_cast<int>(face)) =
+        motion_of(box[face], axis_of(face), origin);
 }
 
 }  // namespace pfv

@@ -3,7 +3,7 @@
 
 #include "geometry/solid_angle.hpp"
 #include "physics/pore_velocities.hpp"
-#include "solve/pressure_system.hpp"
+#include "physics/macroscopic_gradient.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

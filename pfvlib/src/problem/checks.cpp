@@ -24,12 +24,12 @@ bool reads(Model model, const Setting& setting) {
 /// Loads can be held by explicit steps on a pore network; the others integrate the drag over each step, look at
 /// the grid as often as they are told or count their steps until the next network.
 bool can_hold_loads(const Settings& s) {
-  return s.steps.coupling == CouplingChoice::explicit_step && s.model == Model::pores &&
+  return s.steps.coupling == Coupling::explicit_step && s.model == Model::pores &&
          s.options.rebuild_lag == 0;
 }
 
 bool may_be_implicit(const Settings& s) {
-  return s.steps.coupling == CouplingChoice::implicit || s.steps.coupling == CouplingChoice::automatic;
+  return s.steps.coupling == Coupling::implicit || s.steps.coupling == Coupling::automatic;
 }
 
 struct Rule {
@@ -50,16 +50,16 @@ const Rule rules[]{
      "implicit steps factor a matrix with the masses of the grains, which is not done in the background: use "
      "`coupling explicit` or `coupling staged`, or set rebuild_lag to 0"},
     {[](const Settings& s) {
-       return s.options.shear_viscous && s.steps.coupling == CouplingChoice::implicit;
+       return s.options.shear_viscous && s.steps.coupling == Coupling::implicit;
      },
      "shear viscous forces have no implicit step: use `coupling staged`, or leave shear_viscous away"},
     {[](const Settings& s) {
        return s.options.volume_rates == VolumeRates::geometric &&
-              s.steps.coupling != CouplingChoice::explicit_step;
+              s.steps.coupling != Coupling::explicit_step;
      },
      "`volume_rates geometric` goes with `coupling explicit` alone: take `volume_rates reciprocal`, the default"},
     {[](const Settings& s) {
-       return s.model == Model::darcy_grid && s.steps.coupling != CouplingChoice::explicit_step;
+       return s.model == Model::darcy_grid && s.steps.coupling != Coupling::explicit_step;
      },
      "darcy_grid has no staged coupling and no implicit one: use `coupling explicit` (the default), or the model pfv"},
     {[](const Settings& s) {
@@ -128,8 +128,8 @@ void settle(Settings& settings) {
   }
   if (!can_hold_loads(settings) && settings.given.count("couple_every") == 0) settings.steps.couple_error.reset();
   // the papers' volume rates feed some motions, which long steps outgrow
-  if (options.volume_rates == VolumeRates::geometric && settings.steps.coupling == CouplingChoice::automatic)
-    settings.steps.coupling = CouplingChoice::explicit_step;
+  if (options.volume_rates == VolumeRates::geometric && settings.steps.coupling == Coupling::automatic)
+    settings.steps.coupling = Coupling::explicit_step;
 }
 
 void check(const Settings& settings) {
@@ -148,7 +148,7 @@ void check(const Fluid& fluid) {
   check(settings);
 }
 
-void check(const Options& options, CouplingChoice step) {
+void check(const Options& options, Coupling step) {
   Settings settings;
   settings.options = options;
   settings.steps.coupling = step;

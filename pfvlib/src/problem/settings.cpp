@@ -224,7 +224,7 @@ constexpr Hosts command{true}, fix{false, true}, both{true, true}, modify_alone{
 
 std::vector<Setting> of_fluid() {
   return {
-      number(row("Fluid", "viscosity", "dynamic viscosity of the fluid", both_and_modify, any_model), "viscosity",
+      number(row("Fluid", "viscosity", "dynamic viscosity of the fluid; always to be given in the fix", both_and_modify, any_model), "viscosity",
              "MU", "Pa s", demands::positive, fluid(&Fluid::viscosity)),
       number(row("Fluid", "density", "density of the fluid, used with gravity only", both, any_model), "density",
              "RHO", "kg/m3", demands::not_negative, fluid(&Fluid::density)),

@@ -53,16 +53,6 @@ struct PressureSystem {
 PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
                         const Unknowns& unknowns, const Eigen::VectorXd& storage);
 
-/// Pressure difference that drives a throat from its first pore to its second, Pa: along periodic axes
-/// the second pore's image stands offset . gradient higher.
-double driving_pressure(const PoreNetwork& network, int throat, const Eigen::VectorXd& pressures,
-                        const Eigen::Vector3d& gradient);
-
-/// What a macroscopic gradient (Pa/m) drives into each pore, m³/s.
-Eigen::VectorXd gradient_sources(const PoreNetwork& network,
-                                 const std::vector<double>& conductances,
-                                 const Eigen::Vector3d& gradient);
-
 /// b = sources of each pore (m³/s) + inflow of the flux boundaries + what the imposed pressures
 /// (relative to the reference; read at their pores alone) drive.
 void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, const Box& box,

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The order of work of a step.
+#include "pfv/flow.hpp"
+
+#include "pfv/error.hpp"
+#include "problem/box_changes.hpp"
+#include "flow/flow_parts.hpp"
+#include "step/forces.hpp"
+#include "step/network_builder.hpp"
+#include "work/phase_clock.hpp"
+
+namespace pfv {
+
+StepScheme& Schemes::of(Coupling coupling) {
+  switch (coupling) {
+    case Coupling::staged: return staged_;
+    case Coupling::implicit: return implicit_;
+    default: return explicit_;
+  }
+}
+
+void Schemes::forget_network() {
+  limit.forget();
+  staged_.forget_network();
+  implicit_.forget_network();
+}
+
+void Schemes::forget_factor() {
+  limit.forget();
+  staged_.forget_factor();
+  implicit_.forget_factor();
+}
+
+Flow::Parts::Parts(Box in, Fluid of, const Options& by)
+    : box(std::move(in)), fluid(of), options(by), team(std::make_shared<Team>(by.threads)) {}
+
+BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, bool commit) {
+  // explicit steps have ended when they are booked, so that the faces have swept already
+  const double swept =
+      commit && coupling == Coupling::explicit_step ? swept_volume(box, dt) : 0.0;
+  const auto taken_up = [&](Replaced&& before) {
+    carry_over(memory, before, keeper.network(), problem(), swept);
+    schemes.forget_network();
+    // no trace of the old network in what follows
+    solution.unknown_pressures.setZero(keeper.network().unknowns.count);
+  };
+  BuiltNetwork& built =
+      keeper.update(packing, problem(),
+                    {dt, commit, solution.moving, memory.pressures.size() > 0}, work, taken_up);
+  if (factor_pressures(built, problem(), dt, work)) schemes.forget_factor();
+  work.counts.pinned_pores = 0;
+  for (const Isolated& isolated : built.kept.system.isolated)
+    work.counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
+  return built;
+}
+
+void Flow::Parts::begin_solution(const BuiltNetwork& built, double dt, bool commit) {
+  solution.box = box;
+  solution.time = commit ? memory.time + dt : memory.time;
+  solution.dt = dt;
+  solution.stages = 1;
+  solution.implicit = false;
+  solution.unpaid = 0.0;
+  solution.debt_rate = dt > 0.0 ? memory.volume_debt / dt : 0.0;
+  solution.previous_pressures = memory.pressures;
+  solution.growth = growth_of(box, built.grains.spheres.edges,
+                              0.5 * schemes.of(coupling).direction() * dt);
+}
+
+const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
+                                 const GrainDynamics* dynamics, bool commit) {
+  const double wall_start = wall_seconds();
+  {
+    const PhaseClock clock(work.seconds.total);
+    if (!solved) keeper.discard(false);  // after a failure the network may be no longer that of the grains
+    solved = false;
+    kept_balance.reset();
+    coupling = by;
+    schemes.of(by).check(problem());
+    BuiltNetwork& built = update_network(packing, dt, commit);
+    begin_solution(built, dt, commit);
+    schemes.of(by).find({built, problem(), packing, dynamics, work}, solution);
+    if (options.forces) find_forces(built, problem(), packing, work, solution, forces);
+    solved = true;
+    if (commit) {
+      remember(memory, built, fluid, solution);
+      if (solution.moving) keeper.strain(solution.rates, dt);
+    }
+  }
+  work.wall_seconds.total += wall_seconds() - wall_start;
+  return forces;
+}
+
+double Flow::Parts::time_step_limit(const Eigen::VectorXd& masses,
+                                    const std::array<Piston, 6>& pistons) {
+  return schemes.limit.of(network(), problem(), keeper.packed(), masses, pistons, work);
+}
+
+void Flow::Parts::choose_coupling(double dt, const Step& step) {
+  const GrainDynamics& dynamics = *step.dynamics;
+  schemes.choice.choose(time_step_limit(dynamics.masses, dynamics.pistons), dt, step, options,
+                        dynamics.masses.size(), keeper.rebuilds());
+}
+
+const Forces& Flow::Parts::solve_by_choice(const Packing& packing, double dt, const Step& step) {
+  CouplingChoice& choice = schemes.choice;
+  if (!step.commit) {
+    solve(packing, dt, Coupling::explicit_step, nullptr, false);
+    choice.begin_run();
+    choose_coupling(dt, step);
+    if (choice.chosen() == Coupling::explicit_step) return forces;
+    return solve(packing, dt, choice.chosen(), step.dynamics, false);
+  }
+  const double before = keeper.strain();
+  const std::int64_t network = keeper.rebuilds();
+  solve(packing, dt, choice.chosen(), step.dynamics, true);
+  const double strained = keeper.strain() - (network == keeper.rebuilds() ? before : 0.0);
+  if (choice.is_due_after(strained, keeper.rebuilds())) choose_coupling(dt, step);
+  return forces;
+}
+
+Flow::Flow(Box box, Fluid fluid, Options options) {
+  check(box);
+  check(fluid);
+  check(options);
+  parts_ = std::make_unique<Parts>(std::move(box), fluid, options);
+}
+
+Flow::~Flow() = default;
+Flow::Flow(Flow&&) noexcept = default;
+Flow& Flow::operator=(Flow&&) noexcept = default;
+
+const Forces& Flow::advance(const Packing& packing, double dt, const Step& step) {
+  const bool steady = step.coupling == Coupling::explicit_step && !step.commit;
+  require_time_step(dt, !steady);
+  if (parts_->fluid.bulk_modulus && !(dt > 0.0))
+    throw InputError("a compressible fluid needs a time step > 0");
+  if (step.coupling != Coupling::explicit_step && !step.dynamics)
+    throw InputError(std::string(name_of(step.coupling)) +
+                     " coupling needs the masses and other forces of the grains: give Step::dynamics");
+  if (step.coupling == Coupling::automatic) return parts_->solve_by_choice(packing, dt, step);
+  return parts_->solve(packing, dt, step.coupling, step.dynamics, step.commit);
+}
+
+Coupling Flow::coupling() const { return parts_->coupling; }
+int Flow::stages() const { return parts_->solution.stages; }
+
+void Flow::rebuild() { parts_->keeper.discard(true); }
+
+void Flow::set_box(const Box& box) {
+  check(box);
+  if (!same_kinds(parts_->box, box)) parts_->keeper.discard(true);
+  parts_->box = box;
+}
+
+void Flow::set_retriangulation_strain(double strain) {
+  Options changed = parts_->options;
+  changed.retriangulation_strain = strain;
+  check(changed);
+  parts_->options = changed;
+}
+
+FlowState Flow::state() const {
+  const FluidMemory& memory = parts_->memory;
+  const Eigen::VectorXd& pressures = memory.pressures;
+  return {memory.time,
+          strain(),
+          retriangulations(),
+          std::vector<double>(pressures.data(), pressures.data() + pressures.size()),
+          memory.volume_debt,
+          memory.account.at_start,
+          memory.account.came_in};
+}
+
+void Flow::set_state(FlowState state) {
+  FluidMemory& memory = parts_->memory;
+  memory.time = state.time;
+  parts_->keeper.restore(state.strain, state.retriangulations);
+  memory.restored = std::move(state.pore_pressures);
+  memory.volume_debt = state.volume_debt;
+  memory.account = {state.fluid_at_start != 0.0, state.fluid_at_start, state.fluid_came_in, 0.0};
+}
+
+}  // namespace pfv

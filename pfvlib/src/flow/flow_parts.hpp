@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/flow.hpp"
+#include "results/balance.hpp"
+#include "step/coupling_choice.hpp"
+#include "step/fluid_memory.hpp"
+#include "step/implicit_step.hpp"
+#include "step/network_keeper.hpp"
+#include "step/staged_step.hpp"
+
+#include <memory>
+#include <optional>
+
+namespace pfv {
+
+/// The ways to take a step, each with what it keeps.
+class Schemes {
+ public:
+  Schemes() : staged_(limit) {}
+
+  TimeStepLimit limit;  ///< of the explicit one
+  CouplingChoice choice;
+
+  StepScheme& of(Coupling coupling);
+  const ImplicitStep& implicit() const { return implicit_; }
+  void forget_network();
+  void forget_factor();
+
+ private:
+  ExplicitStep explicit_;
+  StagedStep staged_;
+  ImplicitStep implicit_;
+};
+
+/// Who owns what behind Flow.
+struct Flow::Parts {
+  Parts(Box box, Fluid fluid, const Options& options);
+
+  Box box;
+  Fluid fluid;
+  Options options;
+  std::shared_ptr<Team> team;  ///< of options.threads
+  NetworkKeeper keeper;
+  FluidMemory memory;
+  Schemes schemes;
+  WorkRecord work;
+
+  // of the last call
+  bool solved = false;  ///< it has succeeded
+  Coupling coupling = Coupling::explicit_step;
+  Solution solution;  ///< its memory serves the next one
+  Forces forces;
+  std::optional<Balance> kept_balance;
+
+  Problem problem() const { return {box, fluid, options, team}; }
+  /// Solves, and books the step where it is committed.
+  const Forces& solve(const Packing& packing, double dt, Coupling by,
+                      const GrainDynamics* dynamics, bool commit);
+  /// The same with the coupling that is cheapest and stable.
+  const Forces& solve_by_choice(const Packing& packing, double dt, const Step& step);
+  double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
+
+  /// Throws InputError without a result.
+  BuiltNetwork& network() const;
+  const Balance& balance();
+
+ private:
+  BuiltNetwork& update_network(const Packing& packing, double dt, bool commit);
+  void begin_solution(const BuiltNetwork& built, double dt, bool commit);
+  void choose_coupling(double dt, const Step& step);
+};
+
+}  // namespace pfv

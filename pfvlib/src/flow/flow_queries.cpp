@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What Flow answers from its last solution.
+#include "flow/flow_parts.hpp"
+#include "pfv/error.hpp"
+#include "results/averages.hpp"
+#include "results/network_fields.hpp"
+#include "results/network_report.hpp"
+#include "results/viscosity_matrices.hpp"
+#include "step/forces.hpp"
+
+namespace pfv {
+
+BuiltNetwork& Flow::Parts::network() const {
+  if (!solved)
+    throw InputError("Flow holds no result: call step() or evaluate() first (the last call failed, "
+                     "or there was none)");
+  return keeper.network();
+}
+
+const Balance& Flow::Parts::balance() {
+  if (!kept_balance)
+    kept_balance = balance_of(network(), solution, work.counts.correction_solve);
+  network();
+  return *kept_balance;
+}
+
+const Box& Flow::box() const { return parts_->box; }
+const Fluid& Flow::fluid() const { return parts_->fluid; }
+const Options& Flow::options() const { return parts_->options; }
+double Flow::time() const { return parts_->memory.time; }
+double Flow::strain() const { return parts_->keeper.strain(); }
+std::int64_t Flow::retriangulations() const { return parts_->keeper.rebuilds(); }
+
+const Forces& Flow::forces() const {
+  parts_->network();
+  return parts_->forces;
+}
+
+const std::array<FaceResult, 6>& Flow::faces() const { return parts_->balance().faces; }
+
+std::array<Eigen::Vector3d, 6> Flow::face_forces() const {
+  const std::array<FaceResult, 6> faces = pfv::face_forces(parts_->network(), parts_->solution);
+  std::array<Eigen::Vector3d, 6> total;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    total[f] = faces[f].force_pressure + faces[f].force_viscous;
+  return total;
+}
+
+const Eigen::VectorXd& Flow::pore_pressures() const {
+  parts_->network();
+  return parts_->solution.pressures;
+}
+
+double Flow::pressure_at(const Eigen::Vector3d& place) const {
+  return pfv::pressure_at(parts_->network(), parts_->solution, place);
+}
+
+double Flow::plane_pressure(int axis, double position) const {
+  return pfv::plane_pressure(parts_->network(), parts_->solution, axis, position);
+}
+
+double Flow::mean_pressure() const {
+  return pfv::mean_pressure(parts_->network(), parts_->solution);
+}
+
+double Flow::time_step_limit(const Eigen::VectorXd& masses,
+                             const std::array<Piston, 6>& pistons) {
+  return parts_->time_step_limit(masses, pistons);
+}
+
+std::vector<Eigen::Matrix3d> Flow::viscosity_matrices(const std::vector<int>& columns) const {
+  return pfv::viscosity_matrices(parts_->network(), parts_->problem(), parts_->keeper.packed(),
+                                 columns, parts_->work.counts);
+}
+
+std::vector<int> Flow::hidden() const {
+  const BuiltNetwork& built = parts_->network();
+  std::vector<int> columns;
+  for (const int sphere : built.network.hidden) columns.push_back(built.grains.columns[sphere]);
+  return columns;
+}
+
+std::int64_t Flow::hidden_or_outside() const {
+  const BuiltNetwork& built = parts_->network();
+  return static_cast<std::int64_t>(built.network.hidden.size()) + parts_->keeper.packed() -
+         built.grains.spheres.size();
+}
+
+Eigen::Matrix3Xd Flow::pore_velocities() const {
+  return pfv::pore_velocities(parts_->network(), parts_->balance());
+}
+
+Eigen::Matrix3Xd Flow::sphere_velocities() const {
+  return pfv::sphere_velocities(parts_->network(), parts_->balance(), parts_->keeper.packed());
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_stresses() const {
+  return pfv::sphere_stresses(parts_->network(), parts_->solution, parts_->keeper.packed());
+}
+
+double Flow::plane_flux(int axis, double position) const {
+  return pfv::plane_flux(parts_->network(), parts_->solution, parts_->balance(), axis, position);
+}
+
+SliceMeans Flow::slice_means(int axis, double lower, double upper) const {
+  return pfv::slice_means(parts_->network(), parts_->solution, parts_->balance(), axis, lower,
+                          upper);
+}
+
+const PoreNetwork& Flow::network() const { return parts_->network().network; }
+
+const std::vector<double>& Flow::throat_conductances() const {
+  return parts_->network().conductances.value;
+}
+
+std::vector<double> Flow::throat_fluxes() const { return parts_->balance().throat_fluxes; }
+
+Eigen::VectorXd Flow::pore_volumes() const {
+  const std::vector<double>& volumes = parts_->network().throats.pore_fluid_volume;
+  return Eigen::Map<const Eigen::VectorXd>(volumes.data(),
+                                           static_cast<Eigen::Index>(volumes.size()));
+}
+
+Report Flow::report() const {
+  BuiltNetwork& built = parts_->network();
+  const Solution& solution = parts_->solution;
+  const Balance& balance = parts_->balance();
+  Report report = network_report(built, parts_->problem(), solution, balance,
+                                 parts_->work.counts.query_solve);
+  report.spheres = parts_->keeper.packed();
+  report.outside = report.spheres - built.grains.spheres.size();
+  add_account(report, parts_->memory, built, parts_->fluid, solution);
+  if (parts_->forces.total.cols() > 0) report.force_sum = parts_->forces.total.rowwise().sum();
+  report.residual =
+      relative_residual(solution.implicit ? parts_->schemes.implicit().matrix() : built.kept.system.matrix,
+                        solution.unknown_pressures, solution.right_side);
+  report.counts = parts_->work.counts;
+  report.seconds = parts_->work.seconds;
+  report.wall_seconds = parts_->work.wall_seconds;
+  return report;
+}
+
+FieldGrid Flow::fields() const {
+  return network_fields(parts_->network(), parts_->solution, parts_->balance());
+}
+
+}  // namespace pfv

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "network/grains.hpp"
+
+#include "text/number_text.hpp"
+#include "pfv/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace pfv {
+
+namespace {
+
+std::string place(const Eigen::Vector3d& x) {
+  std::ostringstream text;
+  text << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")";
+  return text.str();
+}
+
+void check_shapes(const Packing& packing) {
+  const Eigen::Index n = packing.size();
+  if (packing.displaced_volumes.size() != n && packing.displaced_volumes.size() != 0)
+    throw InputError("packing: " + std::to_string(packing.displaced_volumes.size()) +
+                     " displaced volumes for " + std::to_string(n) + " spheres; give one a sphere");
+  if (packing.positions.cols() != n || packing.radii.size() != n ||
+      (packing.velocities.cols() != n && packing.velocities.cols() != 0))
+    throw InputError("packing: ids, positions, radii and velocities have different lengths (" +
+                     std::to_string(n) + ", " + std::to_string(packing.positions.cols()) + ", " +
+                     std::to_string(packing.radii.size()) + ", " +
+                     std::to_string(packing.velocities.cols()) + ")");
+}
+
+void check_values(const Packing& packing) {
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    const std::string sphere = "sphere " + std::to_string(packing.ids[k]);
+    if (!packing.positions.col(k).allFinite())
+      throw InputError(sphere + ": its position " + place(packing.positions.col(k)) +
+                       " is not finite");
+    if (!(packing.radii[k] > 0.0) || !std::isfinite(packing.radii[k]))
+      throw InputError(sphere + ": its radius " + std::to_string(packing.radii[k]) +
+                           " is not a positive number",
+                       {{packing.ids[k]}, {}});
+    if (packing.velocities.cols() > 0 && !packing.velocities.col(k).allFinite())
+      throw InputError(sphere + ": its velocity " + place(packing.velocities.col(k)) +
+                       " is not finite");
+    if (packing.displaced_volumes.size() > 0 && !std::isfinite(packing.displaced_volumes[k]))
+      throw InputError(sphere + ": its displaced volume is not finite");
+  }
+}
+
+/// Of a sphere some thousand boxes wide only its cap is in the box, as a difference of volumes whose
+/// last digit is already as large as the box's seventh.
+void refuse_giants(const Packing& packing, const Box& box) {
+  const double largest = 1e3 * std::cbrt(box.volume());
+  for (Eigen::Index k = 0; k < packing.size(); ++k)
+    if (packing.radii[k] > largest)
+      throw InputError("sphere " + std::to_string(packing.ids[k]) + ": its radius " +
+                       detail::number_text(packing.radii[k]) +
+                           " m is more than a thousand times the size of the box; is it in metres?",
+                       {{packing.ids[k]}, {}});
+}
+
+void refuse_repeated_ids(const Packing& packing) {
+  std::vector<std::int64_t> ids(packing.ids.data(), packing.ids.data() + packing.size());
+  std::sort(ids.begin(), ids.end());
+  const auto twice = std::adjacent_find(ids.begin(), ids.end());
+  if (twice != ids.end())
+    throw InputError("sphere id " + std::to_string(*twice) + " occurs twice; ids must be unique",
+                     {{*twice}, {}});
+}
+
+}  // namespace
+
+std::string sphere_list(const Packing::Ids& ids, const std::vector<int>& columns) {
+  constexpr std::size_t shown = 4;
+  std::string text = columns.size() == 1 ? "sphere " : "spheres ";
+  for (std::size_t i = 0; i < columns.size() && i < shown; ++i)
+    text += (i ? ", " : "") + std::to_string(ids[columns[i]]);
+  if (columns.size() > shown) text += " and " + std::to_string(columns.size() - shown) + " more";
+  return text;
+}
+
+bool is_inside(const Packing& packing, Eigen::Index column, const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x = packing.positions(axis, column);
+    if (!box.periodic[axis] && !(x > box.lower[axis] && x < box.upper[axis])) return false;
+  }
+  return true;
+}
+
+ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains outside) {
+  check_shapes(packing);
+  check_values(packing);
+  refuse_giants(packing, box);
+  refuse_repeated_ids(packing);
+  if (packing.size() == 0 && outside == OutsideGrains::refuse)
+    throw InputError("the packing has no spheres; give at least one");
+  ActiveGrains grains;
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    if (is_inside(packing, k, box)) {
+      grains.columns.push_back(static_cast<int>(k));
+    } else if (outside == OutsideGrains::refuse) {
+      throw InputError("sphere " + std::to_string(packing.ids[k]) + ": its centre " +
+                       place(packing.positions.col(k)) + " is not inside the box from " +
+                       place(box.lower) + " to " + place(box.upper) +
+                           "; enlarge the box or remove the sphere",
+                       {{packing.ids[k]}, {}});
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(grains.columns.size());
+  Spheres& spheres = grains.spheres;
+  spheres.ids.resize(n);
+  spheres.centres.resize(3, n);
+  spheres.radii.resize(n);
+  spheres.edges = box.upper - box.lower;
+  spheres.periodic = box.periodic;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int k = grains.columns[i];
+    spheres.ids[i] = packing.ids[k];
+    spheres.centres.col(i) = packing.positions.col(k) - box.lower;
+    for (int axis = 0; axis < 3; ++axis)  // back into the periodic cell
+      if (box.periodic[axis])
+        spheres.centres(axis, i) -=
+            spheres.edges[axis] * std::floor(spheres.centres(axis, i) / spheres.edges[axis]);
+    spheres.radii[i] = packing.radii[k];
+  }
+  return grains;
+}
+
+void gather_velocities(const Packing& packing, const std::vector<int>& columns,
+                       Eigen::Matrix3Xd& velocities) {
+  velocities.resize(3, static_cast<Eigen::Index>(columns.size()));
+  if (packing.velocities.cols() == 0)
+    velocities.setZero();
+  else
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      velocities.col(static_cast<Eigen::Index>(i)) = packing.velocities.col(columns[i]);
+}
+
+double displaced_volume(const Packing& packing, Eigen::Index column) {
+  constexpr double pi = 3.14159265358979323846;
+  if (packing.displaced_volumes.size() == packing.size()) return packing.displaced_volumes[column];
+  const double r = packing.radii[column];
+  return 4.0 / 3.0 * pi * r * r * r;
+}
+
+bool at_rest(const Packing& packing, const Box& box, bool spins) {
+  for (const FaceCondition& face : box.faces)
+    if (face.velocity != 0.0 || face.spin != 0.0 || !face.sliding.isZero(0.0)) return false;
+  return (packing.velocities.array() == 0.0).all() &&
+         (!spins || (packing.angular_velocities.array() == 0.0).all());
+}
+
+}  // namespace pfv

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/box_changes.hpp"
+
+#include "pfv/error.hpp"
+
+#include <cmath>
+
+namespace pfv {
+
+bool same_kinds(const Box& a, const Box& b) {
+  if (a.patches.size() != b.patches.size() || a.regions.size() != b.regions.size() ||
+      a.periodic != b.periodic)
+    return false;
+  for (std::size_t i = 0; i < a.regions.size(); ++i)
+    if (a.regions[i].lower != b.regions[i].lower || a.regions[i].upper != b.regions[i].upper ||
+        a.regions[i].boundary.kind != b.regions[i].boundary.kind)
+      return false;
+  for (std::size_t i = 0; i < a.patches.size(); ++i)
+    if (a.patches[i].face != b.patches[i].face ||
+        a.patches[i].rectangle != b.patches[i].rectangle ||
+        a.patches[i].boundary.kind != b.patches[i].boundary.kind)
+      return false;
+  for (int f = 0; f < 6; ++f)
+    if (a.faces[f].wall != b.faces[f].wall ||
+        a.faces[f].boundary.kind != b.faces[f].boundary.kind)
+      return false;
+  return true;
+}
+
+void require_time_step(double dt, bool commit) {
+  const bool fits = std::isfinite(dt) && (commit ? dt > 0.0 : dt >= 0.0);
+  if (!fits)
+    throw InputError("the time step is " + std::to_string(dt) + " s; it must be " +
+                     (commit ? ">" : ">=") + " 0 and finite");
+}
+
+}  // namespace pfv

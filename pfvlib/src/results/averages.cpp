@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "results/averages.hpp"
+
+#include "network/pore_network.hpp"
+#include "pfv/error.hpp"
+#include "physics/pore_velocities.hpp"
+#include "physics/sphere_stresses.hpp"
+
+namespace pfv {
+
+namespace {
+
+Eigen::Matrix3Xd integrals_of(const BuiltNetwork& built, const Balance& balance) {
+  return velocity_integrals(built.network, built.vertices, built.boundaries,
+                            balance.throat_fluxes, balance.contact_inflows);
+}
+
+void require_axis(int axis) {
+  if (axis < 0 || axis > 2)
+    throw InputError("axis " + std::to_string(axis) + ": the axes are 0, 1 and 2");
+}
+
+}  // namespace
+
+Eigen::Matrix3Xd pore_velocities(const BuiltNetwork& built, const Balance& balance) {
+  Eigen::Matrix3Xd velocities = integrals_of(built, balance);
+  velocities.array().rowwise() /= storage_volumes(built.throats).transpose().array();
+  return velocities;
+}
+
+Eigen::Matrix3Xd sphere_velocities(const BuiltNetwork& built, const Balance& balance,
+                                   Eigen::Index packed) {
+  const Eigen::Matrix3Xd integrals = integrals_of(built, balance);
+  const Eigen::VectorXd volumes = storage_volumes(built.throats);
+  const int active = built.grains.spheres.size();
+  const SurfacePressure around = built.operators.surface_pressure
+                                     ? *built.operators.surface_pressure
+                                     : surface_pressure(built.network, built.vertices, built.grains.spheres);
+  Eigen::Matrix3Xd result = Eigen::Matrix3Xd::Zero(3, packed);
+  for (int sphere = 0; sphere < active; ++sphere) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double volume = 0.0;
+    for (int e = around.row_begin[sphere]; e < around.row_begin[sphere + 1]; ++e) {
+      sum += around.weight[e] * integrals.col(around.pore[e]);
+      volume += around.weight[e] * volumes[around.pore[e]];
+    }
+    if (volume > 0.0) result.col(built.grains.columns[sphere]) = sum / volume;
+  }
+  return result;
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_stresses(const BuiltNetwork& built,
+                                                         const Solution& solution,
+                                                         Eigen::Index packed) {
+  const int active = built.grains.spheres.size();
+  const Stresses stresses =
+      pfv::sphere_stresses(built.network, built.throats, built.operators.viscous_shares, built.vertices,
+                           solution.pressures, built.grains.spheres,
+                           solution.box.pressure_gradient);
+  Stresses result = Stresses::Zero(6, packed);
+  for (int sphere = 0; sphere < active; ++sphere)
+    result.col(built.grains.columns[sphere]) = stresses.col(sphere);
+  return result;
+}
+
+double plane_flux(const BuiltNetwork& built, const Solution& solution, const Balance& balance,
+                  int axis, double position) {
+  require_axis(axis);
+  const PoreNetwork& network = built.network;
+  if (solution.box.periodic[axis])
+    throw InputError("the flux through a plane normal to a periodic axis is the superficial velocity "
+                     "times the area: see the permeability tensor");
+  const double relative = position - network.origin[axis], end = built.grains.spheres.edges[axis];
+  if (!(relative >= 0.0 && relative <= end))
+    throw InputError("the plane at " + std::to_string(position) + " m is outside the box");
+  const auto beyond = [&](int pore) {
+    return network.pore_centres(axis, pore) > relative ? 1.0 : 0.0;
+  };
+  double flux = 0.0;
+  for (int t = 0; t < network.throats(); ++t)
+    flux += balance.throat_fluxes[t] *
+            (beyond(network.throat_pores[t][1]) - beyond(network.throat_pores[t][0]));
+  // what enters through the two faces crosses the plane on its way to pores on the other side
+  const auto& contacts = built.boundaries.contacts;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (contacts[c].face == 2 * axis) flux += balance.contact_inflows[c] * beyond(contacts[c].pore);
+    if (contacts[c].face == 2 * axis + 1)
+      flux -= balance.contact_inflows[c] * (1.0 - beyond(contacts[c].pore));
+  }
+  return flux;
+}
+
+SliceMeans slice_means(const BuiltNetwork& built, const Solution& solution, const Balance& balance,
+                       int axis, double lower, double upper) {
+  require_axis(axis);
+  const Eigen::Matrix3Xd integrals = integrals_of(built, balance);
+  const Eigen::VectorXd volumes = storage_volumes(built.throats);
+  SliceMeans means;
+  for (int p = 0; p < built.network.pores(); ++p) {
+    const double place = built.network.pore_centres(axis, p) + built.network.origin[axis];
+    if (!(place >= lower && place < upper)) continue;
+    ++means.pores;
+    means.volume += volumes[p];
+    means.pressure += volumes[p] * solution.pressures[p];
+    means.velocity += integrals.col(p);
+  }
+  if (means.pores == 0)
+    throw InputError("no pore has its centre between " + std::to_string(lower) + " and " +
+                     std::to_string(upper) + " m");
+  means.pressure /= means.volume;
+  means.velocity /= means.volume;
+  return means;
+}
+
+double pressure_at(const BuiltNetwork& built, const Solution& solution,
+                   const Eigen::Vector3d& place) {
+  const Spheres& spheres = built.vertices;
+  const Eigen::Vector3d relative = place - built.network.origin;
+  if (built.network.cells() == 0 || !(relative.array() >= 0.0).all() ||
+      !(relative.array() <= spheres.edges.array()).all())
+    throw InputError("no pressure at a place outside the box (or in a box without grains)");
+  const int cell = locate(built.network, spheres, relative, 0);
+  return solution.pressures[built.network.cell_pore[cell]];
+}
+
+double plane_pressure(BuiltNetwork& built, const Solution& solution, int axis, double position) {
+  const double relative = position - built.network.origin[axis];
+  std::optional<CellExtents>& extents = built.operators.cell_extents[axis];
+  if (!extents) extents = cell_extents(built.network, built.vertices, axis);
+  std::vector<char> counted(built.network.pores(), 0);  // a pore may have several cells
+  double sum = 0.0;
+  int count = 0;
+  for (int c = 0; c < built.network.cells(); ++c) {
+    if (extents->low[c] > relative || relative > extents->high[c]) continue;
+    const int pore = built.network.cell_pore[c];
+    if (counted[pore]) continue;
+    counted[pore] = 1;
+    sum += solution.pressures[pore];
+    ++count;
+  }
+  if (count == 0)
+    throw InputError("the plane at " + std::to_string(position) + " m cuts no pore");
+  return sum / count;
+}
+
+double mean_pressure(const BuiltNetwork& built, const Solution& solution) {
+  const Eigen::VectorXd volumes = storage_volumes(built.throats);
+  return volumes.size() > 0 ? volumes.dot(solution.pressures) / volumes.sum() : 0.0;
+}
+
+}  // namespace pfv

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "results/balance.hpp"
+
+#include "step/continuity.hpp"
+#include "step/forces.hpp"
+#include "step/operators.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pfv {
+
+namespace {
+
+/// Flow rate (m³/s) into the box through each boundary contact.
+std::vector<double> contact_inflows(const BuiltNetwork& built, const Solution& solution,
+                                    const Eigen::VectorXd& inflow) {
+  const auto& contacts = built.boundaries.contacts;
+  const auto carries = [&](const PoreBoundaries::Contact& contact) {
+    // what a region brings in enters inside, also into a pore that touches a face
+    if (contact.boundary >= first_region(solution.box) &&
+        contact.face != PoreBoundaries::inside)
+      return false;
+    const Boundary& boundary = boundary_of(solution.box, contact.boundary);
+    const int unknown = built.unknowns.of_pore[contact.pore];
+    if (unknown == Unknowns::imposed) return boundary.imposes_pressure();
+    return boundary.imposes_flux() &&
+           built.unknowns.of_boundary[contact.boundary] == unknown;
+  };
+  std::vector<double> result(contacts.size(), 0.0);
+  for (std::size_t first = 0; first < contacts.size();) {
+    std::size_t last = first;
+    double area = 0.0;
+    for (; last < contacts.size() && contacts[last].pore == contacts[first].pore; ++last)
+      if (carries(contacts[last])) area += built.bases.area[last];
+    // a pore on several open faces: by its base on each
+    for (std::size_t c = first; c < last; ++c) {
+      if (!carries(contacts[c])) continue;
+      if (contacts[c].face == PoreBoundaries::inside) result[c] = inflow[contacts[c].pore];
+      else if (area > 0.0)
+        result[c] = inflow[contacts[c].pore] * built.bases.area[c] / area;
+    }
+    first = last;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<BoundaryPart> boundary_parts(const BuiltNetwork& built, const Solution& solution,
+                                         const std::vector<double>& inflows) {
+  std::vector<BoundaryPart> parts;
+  for (std::size_t c = 0; c < inflows.size(); ++c) {
+    const PoreBoundaries::Contact& contact = built.boundaries.contacts[c];
+    const bool of_region = contact.boundary >= first_region(solution.box);
+    if (of_region && contact.face != PoreBoundaries::inside) continue;  // it enters inside
+    parts.push_back({contact.boundary, inflows[c], solution.pressures[contact.pore]});
+  }
+  return parts;
+}
+
+double traffic(const BuiltNetwork& built, const Solution& solution) {
+  const PoreNetwork& network = built.network;
+  double sum = gross_rates(built, solution.motion).sum();
+  for (int t = 0; t < network.throats(); ++t)
+    sum += built.conductances.value[t] *
+           (std::abs(solution.relative_pressures[network.throat_pores[t][0]]) +
+            std::abs(solution.relative_pressures[network.throat_pores[t][1]]));
+  if (built.kept.compressible())
+    sum += built.kept.storage.dot(solution.pressures.cwiseAbs() +
+                                  solution.previous_pressures.cwiseAbs());
+  return sum;
+}
+
+namespace {
+
+/// What the macroscopic gradient pushes into the pores of one period, across the surface that parts
+/// them from their images; grains and walls carry it.
+Eigen::Vector3d driving_force(const BuiltNetwork& built, const Solution& solution) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  if (solution.box.pressure_gradient.isZero(0.0)) return sum;
+  const PoreNetwork& network = built.network;
+  for (int t = 0; t < network.throats(); ++t)
+    sum += solution.box.pressure_gradient.dot(network.throat_offset(t)) *
+           built.throats.area[t] * built.throats.normal.col(t);
+  return sum;
+}
+
+}  // namespace
+
+double force_balance_error(const BuiltNetwork& built, const Solution& solution,
+                           const std::array<FaceResult, 6>& faces) {
+  if (solution.loads.cols() == 0) return 0.0;
+  const int spheres = built.grains.spheres.size();
+  const Eigen::Vector3d driven = driving_force(built, solution);
+  Eigen::Vector3d sum = driven + solution.loads.topLeftCorner(3, spheres).rowwise().sum();
+  for (const FaceResult& face : faces) sum += face.force_pressure + face.force_viscous;
+  const double largest_pressure =
+      solution.pressures.size() > 0 ? solution.pressures.cwiseAbs().maxCoeff() : 0.0;
+  return force_balance_error(sum, largest_pressure, solution.box, driven.norm());
+}
+
+Balance balance_of(const BuiltNetwork& built, const Solution& solution, std::int64_t& solves) {
+  Balance balance;
+  balance.correction = pressure_correction(built, solution, solves);
+  balance.throat_fluxes = throat_fluxes(built, solution, balance.correction);
+  balance.contact_inflows = contact_inflows(
+      built, solution, pore_inflows(built, solution, balance.throat_fluxes, balance.correction));
+  balance.faces = face_forces(built, solution);
+  for (std::size_t c = 0; c < balance.contact_inflows.size(); ++c) {
+    const int face = built.boundaries.contacts[c].face;
+    if (face != PoreBoundaries::inside) balance.faces[face].flux += balance.contact_inflows[c];
+  }
+  return balance;
+}
+
+}  // namespace pfv

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/fields.hpp"
+#include "results/balance.hpp"
+
+namespace pfv {
+
+/// See Flow::fields.
+FieldGrid network_fields(const BuiltNetwork& built, const Solution& solution,
+                         const Balance& balance);
+
+}  // namespace pfv

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "results/network_report.hpp"
+
+#include <algorithm>
+
+namespace pfv {
+
+namespace {
+
+void add_geometry(Report& report, BuiltNetwork& built) {
+  std::optional<SolidUnion>& solid = built.operators.solid;
+  if (!solid) solid = solid_union(built.network, built.vertices, built.grains.spheres);
+  report.hidden = static_cast<std::int64_t>(built.network.hidden.size());
+  report.pores = built.network.pores();
+  report.unknowns = built.unknowns.count;
+  const double volume = built.grains.spheres.edges.prod();
+  // where spheres as large as the box leave nothing, round-off may leave less
+  report.pore_volume = std::clamp(volume - solid->volume, 0.0, volume);
+  report.porosity = report.pore_volume / volume;
+  report.solid_area = solid->area;
+}
+
+void add_balances(Report& report, const BuiltNetwork& built, const Solution& solution,
+                  const Balance& balance, const Totals& totals) {
+  report.inflow = totals.inflow;
+  report.outflow = totals.outflow;
+  report.volume_rate_sum = solution.rates.sum();
+  if (built.kept.compressible())
+    report.storage_rate = built.kept.storage.dot(solution.pressures - solution.previous_pressures +
+                                                 balance.correction);
+  report.mass_error = mass_error(totals, report.volume_rate_sum, report.storage_rate,
+                                 traffic(built, solution));
+  report.force_balance_error = force_balance_error(built, solution, balance.faces);
+}
+
+}  // namespace
+
+Report network_report(BuiltNetwork& built, const Problem& problem, const Solution& solution,
+                      const Balance& balance, std::int64_t& solves) {
+  const Options& options = problem.options;
+  Report report;
+  add_geometry(report, built);
+  const std::vector<BoundaryPart> parts =
+      boundary_parts(built, solution, balance.contact_inflows);
+  const Totals totals = totals_of(solution.box, parts);
+  add_balances(report, built, solution, balance, totals);
+  add_permeability(report, built, problem, solution, totals, balance.throat_fluxes, solves);
+  report.solver = built.kept.solver->name();
+  report.ordering = name_of(resolved(options.solver, options.ordering));
+  report.conductance = name_of(options.conductance);
+  report.faces = balance.faces;
+  report.openings = openings_of(solution.box, parts);
+  report.threads = options.threads;
+  report.peak_memory_bytes = peak_memory();
+  return report;
+}
+
+void add_account(Report& report, const FluidMemory& memory, const BuiltNetwork& built,
+                 const Fluid& fluid, const Solution& solution) {
+  const double volume = solution.box.volume();
+  report.fluid_volume = fluid_space(volume, built.grains.spheres);
+  report.fluid_came_in = memory.account.came_in;
+  report.fluid_balance_error = fluid_missing(memory, built, fluid, solution.box) /
+                               std::max(*report.fluid_volume, 0.01 * volume);
+}
+
+}  // namespace pfv

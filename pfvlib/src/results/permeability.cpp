@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The permeability of a packing and how far it can be trusted.
+#include "physics/macroscopic_gradient.hpp"
+#include "physics/permeability_error.hpp"
+#include "results/balance.hpp"
+#include "step/operators.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace pfv {
+
+namespace {
+
+/// Superficial velocity (m/s) through a periodic box: the sum over throats of flow rate times the way
+/// from pore to pore, over the volume.
+Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vector<double>& fluxes,
+                                     double volume) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [i, j] = network.throat_pores[t];
+    sum += fluxes[t] * (network.pore_centres.col(j) + network.throat_offset(t) -
+                        network.pore_centres.col(i));
+  }
+  return sum / volume;
+}
+
+/// -mu U . g / g² for the macroscopic gradient g of a periodic box.
+std::optional<double> permeability_along_gradient(const BuiltNetwork& built, double viscosity,
+                                                  const Solution& solution,
+                                                  const std::vector<double>& fluxes) {
+  const Eigen::Vector3d& gradient = solution.box.pressure_gradient;
+  const Eigen::Vector3d velocity =
+      superficial_velocity(built.network, fluxes, solution.box.volume());
+  return -viscosity * velocity.dot(gradient) / gradient.squaredNorm();
+}
+
+/// mu Q L / (dp S) between two opposite open faces (method: Darcy's law); absent where the flow is
+/// not steady or not one-dimensional.
+std::optional<double> permeability(const BuiltNetwork& built, double viscosity,
+                                   const Solution& solution, const Totals& totals,
+                                   const std::vector<double>& fluxes) {
+  if (solution.moving || built.kept.compressible()) return {};
+  if (!solution.box.pressure_gradient.isZero(0.0))
+    return permeability_along_gradient(built, viscosity, solution, fluxes);
+  const std::optional<int> axis = axis_of_flow(solution.box);
+  if (!axis) return {};
+  std::array<double, 2> pressure{0.0, 0.0};
+  for (const auto& contact : built.boundaries.contacts)
+    if (contact.face / 2 == *axis)
+      pressure[contact.face % 2] = solution.relative_pressures[contact.pore];
+  return permeability_of(solution.box, *axis, viscosity, totals,
+                         std::abs(pressure[0] - pressure[1]));
+}
+
+struct TensorFlow {
+  Eigen::Matrix3d permeability = Eigen::Matrix3d::Zero();  ///< m², 0 along axes that are not periodic
+  std::vector<double> dissipation;  ///< of each throat, summed over the axes' unit gradients
+};
+
+/// Absent without periodic axes, where grains move, and where other faces are open. One solve an axis, on the
+/// kept factor, for a unit gradient and no other drive.
+std::optional<TensorFlow> tensor_flow(const BuiltNetwork& built, double viscosity,
+                                      const Solution& solution, std::int64_t& solves) {
+  if (!solution.box.any_periodic() || solution.moving || built.kept.compressible()) return {};
+  // a pressure on another face excludes a gradient
+  for (const auto& contact : built.boundaries.contacts)
+    if (boundary_of(solution.box, contact.boundary).is_open()) return {};
+  const PoreNetwork& network = built.network;
+  TensorFlow result;
+  Eigen::Matrix3d& tensor = result.permeability;
+  result.dissipation.assign(network.throats(), 0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!solution.box.periodic[axis]) continue;
+    const Eigen::Vector3d gradient = Eigen::Vector3d::Unit(axis);
+    const Eigen::VectorXd pressures = homogeneous_pressures(
+        built, gradient_sources(network, built.conductances.value, gradient), solves);
+    std::vector<double> fluxes(network.throats());
+    for (int t = 0; t < network.throats(); ++t) {
+      const double drop = driving_pressure(network, t, pressures, gradient);
+      fluxes[t] = built.conductances.value[t] * drop;
+      result.dissipation[t] += fluxes[t] * drop;
+    }
+    tensor.col(axis) = -viscosity *
+                       superficial_velocity(network, fluxes, solution.box.volume());
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (!solution.box.periodic[axis]) tensor.row(axis).setZero();
+  return result;
+}
+
+std::vector<double> throat_dissipation(const BuiltNetwork& built, const Solution& solution,
+                                       std::vector<double> fluxes) {
+  for (int t = 0; t < built.network.throats(); ++t)
+    fluxes[t] *= driving_pressure(built.network, t, solution.relative_pressures,
+                                  solution.box.pressure_gradient);
+  return fluxes;
+}
+
+void add_error(Report& report, const BuiltNetwork& built, const Problem& problem,
+               const std::vector<double>& dissipation) {
+  PermeabilityError error = permeability_error(
+      built.network, built.throats, built.vertices, problem.options.conductance,
+      problem.fluid.viscosity, built.conductances, dissipation, 1.0 - report.porosity);
+  report.permeability_error = error.relative;
+  report.degenerate_share = error.degenerate_share;
+  report.outside_range = std::move(error.outside_range);
+}
+
+}  // namespace
+
+void add_permeability(Report& report, const BuiltNetwork& built, const Problem& problem,
+                      const Solution& solution, const Totals& totals,
+                      const std::vector<double>& fluxes, std::int64_t& solves) {
+  const double viscosity = problem.fluid.viscosity;
+  report.permeability = permeability(built, viscosity, solution, totals, fluxes);
+  const std::optional<TensorFlow> tensor = tensor_flow(built, viscosity, solution, solves);
+  if (tensor) report.permeability_tensor = tensor->permeability;
+  if (report.permeability)
+    add_error(report, built, problem, throat_dissipation(built, solution, fluxes));
+  else if (tensor)
+    add_error(report, built, problem, tensor->dissipation);
+}
+
+}  // namespace pfv

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "network/grains.hpp"
+#include "network/pore_boundaries.hpp"
+#include "physics/conductances.hpp"
+#include "physics/force_matrix.hpp"
+#include "physics/shear_forces.hpp"
+#include "physics/solid_union.hpp"
+#include "physics/throats.hpp"
+#include "physics/volume_rates.hpp"
+#include "solve/linear_solver.hpp"
+#include "solve/pressure_system.hpp"
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace pfv {
+
+/// G and its factor.
+struct KeptSystem {
+  PressureSystem system;
+  std::unique_ptr<LinearSolver> solver;         ///< null until the first factorisation
+  std::unique_ptr<LinearSolver> former_solver;  ///< of the network before: its memory serves again
+  Eigen::VectorXd storage;  ///< V^f / (K_f dt) of each pore, m³/Pa; no entries for an incompressible fluid
+  double storage_dt = 0.0;  ///< time step whose storage term is in the factor
+  std::optional<bool> loses_digits;  ///< whether its solves need refinement; unknown before the first
+
+  bool compressible() const { return storage.size() > 0; }
+};
+
+/// From where to where each cell reaches along an axis, m.
+struct CellExtents {
+  std::vector<double> low, high;
+};
+
+/// What a step or a query makes when it first needs it.
+struct KeptOperators {
+  std::optional<VolumeRateMatrix> geometric_rates;  ///< E; only where it is wanted
+  std::optional<SumOrder> sum_order;                ///< of S^T v
+  ViscousShares viscous_shares;                     ///< made with the force matrix
+  std::optional<ForceMatrix> force_matrix;          ///< S
+  std::optional<ForceMatrix> pressure_force_matrix;
+  std::optional<std::pair<Eigen::Vector3d, Loads>> gradient_loads;  ///< for that macroscopic gradient
+  std::optional<SurfacePressure> surface_pressure;
+  std::optional<std::vector<ShearPair>> shear_pairs;
+  std::optional<SolidUnion> solid;
+  std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis
+};
+
+/// All that is derived from one packing and kept until the next triangulation.
+struct BuiltNetwork {
+  ActiveGrains grains;
+  PoreNetwork network;
+  Spheres vertices;  ///< what the network's vertices stand for: the grains, or those and their images
+  PoreBoundaries boundaries;
+  Throats throats;
+  Conductances conductances;
+  Bases bases;  ///< one entry a boundary contact
+  Unknowns unknowns;
+  std::vector<double> strain_volume;  ///< volume that a pore's strain refers to, bounded below
+  KeptSystem kept;
+  KeptOperators operators;
+};
+
+/// A place (m) for each unknown: that of its pore, or of one of those that share it.
+Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built);
+
+CellExtents cell_extents(const PoreNetwork& network, const Spheres& spheres, int axis);
+
+/// Fluid volume of a pore, but at least 1 % of its smallest sphere: about a tenth of what a pore
+/// between such spheres holds. Without a bound a nearly empty pore would ask for a new network at
+/// every step (thesis eqs. 5.13-5.14 divide by the pore's volume).
+std::vector<double> strain_volumes(const PoreNetwork& network, const Throats& throats,
+                                   const Spheres& spheres);
+
+/// Fluid volume V^f for the storage of a compressible fluid: the pore's own, but at least 1 % of its
+/// whole volume (overlaps can make it negative).
+Eigen::VectorXd storage_volumes(const Throats& throats);
+
+/// Pressures of a new network from those of the old one: a cell that survives keeps its own, others take
+/// what is found at their place; all are shifted so that the sum of V^f p is conserved.
+Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values,
+                                  const BuiltNetwork& now);
+
+}  // namespace pfv

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pressures of a compressible fluid on a new network.
+#include "network/pore_network.hpp"
+#include "step/built_network.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace pfv {
+
+namespace {
+
+/// The vertices of each cell by the ids of their grains, ascending, with the number of the cell.
+std::vector<std::pair<std::array<std::int64_t, 4>, int>> named_cells(const BuiltNetwork& built) {
+  constexpr std::int64_t walls = std::numeric_limits<std::int64_t>::min();
+  std::vector<std::pair<std::array<std::int64_t, 4>, int>> names(built.network.cells());
+  for (int c = 0; c < built.network.cells(); ++c) {
+    names[c].second = c;
+    for (int i = 0; i < 4; ++i) {
+      const Vertex vertex = built.network.cell_vertices[c][i];
+      names[c].first[i] =
+          is_wall(vertex) ? walls + wall_number(vertex) : built.vertices.ids[vertex];
+    }
+    std::sort(names[c].first.begin(), names[c].first.end());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// For each cell of `now` the cell of `old` with the same vertices, or -1.
+std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& now) {
+  const auto before = named_cells(old), after = named_cells(now);
+  std::vector<int> survivors(now.network.cells(), -1);
+  auto next = before.begin();
+  for (const auto& [name, cell] : after) {
+    while (next != before.end() && next->first < name) ++next;
+    if (next != before.end() && next->first == name) survivors[cell] = next->second;
+  }
+  return survivors;
+}
+
+}  // namespace
+
+Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values,
+                                  const BuiltNetwork& now) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(now.network.pores());
+  if (old.network.cells() == 0 || now.network.pores() == 0) return values;
+  // a cell that survives keeps its pressure: its dual vertex need not lie in it, so its place is no
+  // guide to it
+  const std::vector<int> survivors = surviving_cells(old, now);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(now.network.pores());
+  Eigen::VectorXi count = Eigen::VectorXi::Zero(now.network.pores());
+  for (int c = 0; c < now.network.cells(); ++c)
+    if (survivors[c] >= 0) {
+      sum[now.network.cell_pore[c]] += old_values[old.network.cell_pore[survivors[c]]];
+      ++count[now.network.cell_pore[c]];
+    }
+  int cell = 0;
+  for (int p = 0; p < now.network.pores(); ++p) {
+    if (count[p] > 0) {
+      values[p] = sum[p] / count[p];
+      continue;
+    }
+    const Eigen::Vector3d place =
+        (now.network.origin + now.network.pore_centres.col(p) - old.network.origin)
+            .cwiseMax(0.0)
+            .cwiseMin(old.vertices.edges);
+    cell = locate(old.network, old.vertices, place, cell);
+    values[p] = old_values[old.network.cell_pore[cell]];
+  }
+  // the sum of V^f p is what the storage term conserves (thesis eq. 4.8 with compressibility)
+  const Eigen::VectorXd before = storage_volumes(old.throats);
+  const Eigen::VectorXd after = storage_volumes(now.throats);
+  values.array() += (before.dot(old_values) - after.dot(values)) / after.sum();
+  return values;
+}
+
+}  // namespace pfv

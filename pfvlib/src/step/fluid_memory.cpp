@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "step/fluid_memory.hpp"
+
+namespace pfv {
+
+namespace {
+
+/// What these pressures have pressed into the pores of a network, m³.
+double compressed_in(const BuiltNetwork& built, const Fluid& fluid,
+                     const Eigen::VectorXd& pressures) {
+  if (!fluid.bulk_modulus || pressures.size() == 0) return 0.0;
+  return storage_volumes(built.throats).dot(pressures) / *fluid.bulk_modulus;
+}
+
+void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
+                     const Fluid& fluid) {
+  const int pores = now.network.pores();
+  if (static_cast<int>(memory.restored.size()) == pores && pores > 0)
+    memory.pressures = Eigen::Map<const Eigen::VectorXd>(memory.restored.data(), pores);
+  else if (before.network && memory.pressures.size() > 0 &&
+           memory.pressures.size() == before.network->network.pores())
+    memory.pressures = carried_pressures(*before.network, memory.pressures, now);
+  else
+    memory.pressures.resize(0);
+  memory.restored.clear();
+  if (fluid.bulk_modulus && memory.pressures.size() == 0) memory.pressures.setZero(pores);
+}
+
+void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
+                    const Problem& problem, double swept) {
+  FluidAccount& account = memory.account;
+  const Fluid& fluid = problem.fluid;
+  if (!account.open) {
+    account = {true,
+               fluid_space(problem.box.volume(), now.grains.spheres) +
+                   compressed_in(now, fluid, memory.pressures) - swept,
+               0.0, 0.0};
+    return;
+  }
+  if (!before.grains) return;
+  account.came_in -= displaced_by_newcomers(*before.grains, now.grains.spheres);
+  const double growth = growth_of_grains(*before.grains, now.grains.spheres);
+  double missing = fluid_missing(memory, now, fluid, problem.box) - swept;
+  if (before.moved_by_host) {
+    account.came_in += missing + growth;
+    missing = -growth;
+  } else if (account.ahead != 0.0) {
+    // where faces are within a long step is known up to a part of that step
+    missing = memory.volume_debt - growth;
+  }
+  if (!fluid.bulk_modulus) return;
+  const double volume = storage_volumes(now.throats).sum();
+  if (volume > 0.0) memory.pressures.array() -= *fluid.bulk_modulus * missing / volume;
+  memory.volume_debt = 0.0;
+}
+
+}  // namespace
+
+void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
+                const Problem& problem, double swept) {
+  carry_pressures(memory, before, now, problem.fluid);
+  settle_account(memory, before, now, problem, swept);
+}
+
+double swept_volume(const Box& box, double step) {
+  Eigen::Vector3d stretching = Eigen::Vector3d::Zero();
+  for (const Face face : all_faces) stretching += box[face].velocity * outward_normal(face);
+  const Eigen::Vector3d before = box.upper - box.lower - step * stretching;
+  return box.volume() - before.prod();
+}
+
+void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
+              const Solution& solution) {
+  memory.time += solution.dt;
+  memory.volume_debt = solution.unpaid;
+  const double grown = solution.dt * solution.rates.sum();
+  memory.account.came_in += grown;
+  memory.account.ahead = solution.stages > 1 || solution.implicit ? grown : 0.0;
+  if (built.kept.compressible())
+    memory.account.came_in += solution.dt * built.kept.storage.dot(solution.pressures -
+                                                                   solution.previous_pressures);
+  if (fluid.bulk_modulus) memory.pressures = solution.pressures;
+}
+
+double fluid_missing(const FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
+                     const Box& box) {
+  const FluidAccount& account = memory.account;
+  return fluid_space(box.volume(), built.grains.spheres) + account.ahead +
+         compressed_in(built, fluid, memory.pressures) - account.at_start - account.came_in;
+}
+
+}  // namespace pfv

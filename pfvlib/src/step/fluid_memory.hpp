@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "step/fluid_account.hpp"
+#include "step/network_keeper.hpp"
+#include "step/solution.hpp"
+
+#include <vector>
+
+namespace pfv {
+
+/// What the fluid remembers from one step to the next.
+struct FluidMemory {
+  double time = 0.0;  ///< s, that was advanced
+  /// Of the present pores at the last step, Pa; none but for a compressible fluid.
+  Eigen::VectorXd pressures;
+  std::vector<double> restored;  ///< pressures of a restart, for the network that the next packing gives
+  FluidAccount account;
+  double volume_debt = 0.0;  ///< what the box has grown by beyond the rates of implicit steps, m³
+};
+
+/// Takes the memory to a new network: pressures of a compressible fluid, and the account. Grains that came or
+/// went have pushed fluid out or let it in, and a host that asks for a new network has put grains and faces
+/// elsewhere: that is flow. All else by which the space has changed beyond the volume rates - grains that grew,
+/// what implicit steps left - a compressible fluid takes up: it is compressed. `swept`: by the faces in a step
+/// that has ended and is not in the account yet, m³.
+void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
+                const Problem& problem, double swept);
+
+/// What the faces have swept in a step that has just ended, m³.
+double swept_volume(const Box& box, double step);
+
+/// Books a step that has been taken.
+void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
+              const Solution& solution);
+
+/// What is in the box beyond what was at the start and came in, m³: 0 but for what the volume rates do
+/// not know of.
+double fluid_missing(const FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
+                     const Box& box);
+
+}  // namespace pfv

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "step/network_keeper.hpp"
+
+#include "work/phase_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pfv {
+
+namespace {
+
+/// Sum of |changes| over sum of volumes.
+double mean_strain(const BuiltNetwork& built, const Eigen::VectorXd& changes) {
+  const Eigen::Map<const Eigen::VectorXd> volumes(built.strain_volume.data(), changes.size());
+  return changes.cwiseAbs().sum() / volumes.sum();
+}
+
+}  // namespace
+
+void PoreStrain::begin(StrainMeasure measure, int pores, double taken_over) {
+  value_ = taken_over_ = taken_over;
+  volume_changes_.setZero(measure == StrainMeasure::mean ? pores : 0);
+}
+
+void PoreStrain::add(const BuiltNetwork& built, const Eigen::VectorXd& rates, double step) {
+  if (rates.size() == 0) return;
+  if (volume_changes_.size() > 0) {
+    volume_changes_ += step * rates;
+    value_ = taken_over_ + mean_strain(built, volume_changes_);
+    return;
+  }
+  const Eigen::Map<const Eigen::ArrayXd> volumes(built.strain_volume.data(), rates.size());
+  value_ += (rates.array().abs() / volumes).maxCoeff() * step;
+}
+
+double PoreStrain::since(const PoreStrain& then, const BuiltNetwork& built) const {
+  if (then.volume_changes_.size() > 0)
+    return mean_strain(built, volume_changes_ - then.volume_changes_);
+  return value_ - then.value_;
+}
+
+BuiltNetwork& NetworkKeeper::update(const Packing& packing, const Problem& problem,
+                                    const Wanted& wanted, WorkRecord& work,
+                                    const TakenUp& taken_up) {
+  const auto anew = [&] { rebuild_now(packing, problem, wanted, work, taken_up); };
+  if (is_outdated(packing, problem)) {
+    anew();
+    return *built_;
+  }
+  if (wanted.advance && next_ && --next_->steps == 0) {
+    take_up_next(problem, work, taken_up);
+    if (is_outdated(packing, problem)) {
+      anew();
+      return *built_;
+    }
+  }
+  if (next_ || strain_.value() < problem.options.retriangulation_strain) return *built_;
+  if (problem.options.rebuild_lag == 0)
+    anew();
+  else if (wanted.advance)
+    next_.emplace(Next{BackgroundRebuild(packing, problem, wanted.step, wanted.moving),
+                       problem.options.rebuild_lag, strain_});
+  return *built_;
+}
+
+void NetworkKeeper::discard(bool by_host) {
+  stale_ = true;
+  moved_by_host_ = moved_by_host_ || by_host;
+}
+
+void NetworkKeeper::restore(double strain, std::int64_t rebuilds) {
+  strain_.restore(strain);
+  rebuilds_ = rebuilds;
+}
+
+void NetworkKeeper::rebuild_now(const Packing& packing, const Problem& problem,
+                                const Wanted& wanted, WorkRecord& work, const TakenUp& taken_up) {
+  next_.reset();
+  stale_ = true;
+  std::unique_ptr<LinearSolver> solver = built_ ? std::move(built_->kept.solver) : nullptr;
+  if (built_) former_grains_ = built_->grains.spheres;
+  if (!wanted.keep_former) built_.reset();  // its memory is the new one's
+  auto fresh = derive_network(packing, problem, work);
+  fresh->kept.former_solver = std::move(solver);
+  ids_.assign(packing.ids.data(), packing.ids.data() + packing.size());
+  take_up(std::move(fresh), problem, 0.0, work, taken_up);
+  stale_ = moved_by_host_ = false;
+}
+
+void NetworkKeeper::take_up_next(const Problem& problem, WorkRecord& work,
+                                 const TakenUp& taken_up) {
+  const double start = wall_seconds();
+  std::unique_ptr<BuiltNetwork> fresh = next_->network.take(work);
+  if (fresh->kept.solver) fresh->kept.solver->share_with(problem.team);
+  work.wall_seconds.waited += wall_seconds() - start;
+  const double strain = strain_.since(next_->begun_at, *built_);
+  next_.reset();
+  former_grains_ = built_->grains.spheres;
+  take_up(std::move(fresh), problem, strain, work, taken_up);
+}
+
+void NetworkKeeper::take_up(std::unique_ptr<BuiltNetwork> fresh, const Problem& problem,
+                            double strain, WorkRecord& work, const TakenUp& taken_up) {
+  Replaced replaced{std::move(built_), std::move(former_grains_), moved_by_host_};
+  former_grains_.reset();
+  built_ = std::move(fresh);
+  const int pores = built_->network.pores();
+  strain_.begin(problem.options.strain_measure, pores, strain);
+  work.counts.degenerate_throats = built_->conductances.degenerate;
+  work.counts.merged_pores = built_->network.cells() - pores;
+  if (had_network_) ++rebuilds_;
+  had_network_ = true;
+  taken_up(std::move(replaced));
+}
+
+/// Whether the grains or the boundaries are others than those of the network, whatever the strain.
+bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) const {
+  if (stale_ || !built_) return true;
+  if (packing.size() != packed() || !std::equal(ids_.begin(), ids_.end(), packing.ids.data()))
+    return true;
+  const ActiveGrains& grains = built_->grains;
+  const double strain = problem.options.retriangulation_strain;
+  std::size_t next = 0;
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    const bool active = next < grains.columns.size() && grains.columns[next] == k;
+    if (is_inside(packing, k, problem.box) != active) return true;
+    if (!active) continue;
+    const auto i = static_cast<Eigen::Index>(next++);
+    const double radius = grains.spheres.radii[i];
+    const double grown = std::abs(packing.radii[k] - radius);
+    Eigen::Vector3d moved = packing.positions.col(k) - built_->network.origin -
+                            grains.spheres.centres.col(i);
+    for (int axis = 0; axis < 3; ++axis)  // the host may have wrapped it
+      if (problem.box.periodic[axis])
+        moved[axis] = std::remainder(moved[axis], grains.spheres.edges[axis]);
+    // negated, so that a number that is not finite leads to a rebuild, whose checks name it
+    if (!(3.0 * grown <= strain * radius) || !(moved.squaredNorm() <= radius * radius))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace pfv

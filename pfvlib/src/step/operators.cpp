@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "step/operators.hpp"
+
+namespace pfv {
+
+void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& counts) {
+  if (built.operators.force_matrix) return;
+  built.operators.viscous_shares =
+      viscous_shares(problem.options.conductance, built.network, built.throats, built.vertices);
+  built.operators.force_matrix =
+      force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
+                   built.grains.spheres.size(), {true, true, problem.options.torques}, *problem.team);
+  ++counts.force_matrix;
+}
+
+void make_volume_rates(BuiltNetwork& built, const Problem& problem, Counts& counts) {
+  if (problem.options.volume_rates == VolumeRates::geometric) {
+    if (!built.operators.geometric_rates)
+      built.operators.geometric_rates = volume_rate_matrix(built.network, built.vertices);
+    return;
+  }
+  make_force_matrix(built, problem, counts);
+  if (!built.operators.sum_order || (problem.team->threads() > 1 && built.operators.sum_order->begin.empty()))
+    built.operators.sum_order = sum_order(*built.operators.force_matrix, built.grains.spheres.ids,
+                                built.network.pores(), *problem.team);
+}
+
+void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& counts) {
+  make_force_matrix(built, problem, counts);
+  if (problem.options.split_forces && !built.operators.pressure_force_matrix)
+    built.operators.pressure_force_matrix =
+        force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
+                     built.grains.spheres.size(), {true, false, false}, *problem.team);
+  if (problem.options.shear_viscous && !built.operators.shear_pairs)
+    built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.vertices);
+  if (problem.options.sphere_pressure && !built.operators.surface_pressure)
+    built.operators.surface_pressure =
+        surface_pressure(built.network, built.vertices, built.grains.spheres);
+}
+
+Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
+  Loads loads = multiply(*built.operators.force_matrix, pressures);
+  const Bases& bases = built.bases;
+  for (int b = 0; b < bases.size(); ++b)
+    if (bases.face[b] >= 0)
+      loads.col(spheres_in(loads) + bases.face[b]) += pressures[bases.pore[b]] * bases.load(b);
+  return loads;
+}
+
+const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
+  auto& kept = built.operators.gradient_loads;
+  const Eigen::Vector3d& gradient = problem.box.pressure_gradient;
+  if (!kept || kept->first != gradient)
+    kept = {gradient, gradient_forces(built.network, built.vertices, built.throats,
+                                      built.operators.viscous_shares, built.grains.spheres.size(),
+                                      {true, true, problem.options.torques}, gradient)};
+  return kept->second;
+}
+
+Loads shear_forces_of(const BuiltNetwork& built, double viscosity, const Motion& motion) {
+  Loads sum = Loads::Zero(6, motion.cols());
+  const Eigen::Index spheres = spheres_in(motion);
+  if (built.operators.shear_pairs)
+    sum.topLeftCorner(3, spheres) = shear_forces(*built.operators.shear_pairs, viscosity,
+                                                 motion.topLeftCorner(3, spheres));
+  return sum;
+}
+
+void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates) {
+  rates.resize(built.network.pores());
+  if (built.operators.geometric_rates)
+    volume_rates(*built.operators.geometric_rates, motion, team, rates);
+  else
+    reciprocal_rates(*built.operators.force_matrix, *built.operators.sum_order, built.bases, motion, team, rates);
+}
+
+Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion) {
+  const int pores = built.network.pores();
+  if (built.operators.geometric_rates) return gross_rates(*built.operators.geometric_rates, motion);
+  if (!built.operators.force_matrix) return Eigen::VectorXd::Zero(pores);
+  return gross_rates(*built.operators.force_matrix, built.bases, motion, pores);
+}
+
+Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources,
+                                      std::int64_t& solves) {
+  return homogeneous_pressures(built, *built.kept.solver, sources, solves);
+}
+
+Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, LinearSolver& solver,
+                                      const Eigen::VectorXd& sources, std::int64_t& solves) {
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(built.unknowns.count), x = b;
+  const auto& unknown = built.unknowns.of_pore;
+  for (std::size_t p = 0; p < unknown.size(); ++p)
+    if (unknown[p] >= 0) b[unknown[p]] += sources[static_cast<Eigen::Index>(p)];
+  if (built.unknowns.count > 0) {
+    solver.solve(b, x);
+    ++solves;
+  }
+  Eigen::VectorXd pressures = Eigen::VectorXd::Zero(sources.size());
+  for (std::size_t p = 0; p < unknown.size(); ++p)
+    if (unknown[p] >= 0) pressures[static_cast<Eigen::Index>(p)] = x[unknown[p]];
+  return pressures;
+}
+
+}  // namespace pfv

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "step/pressure_solve.hpp"
+
+#include "pfv/error.hpp"
+#include "physics/macroscopic_gradient.hpp"
+#include "step/continuity.hpp"
+#include "step/network_builder.hpp"
+#include "step/operators.hpp"
+#include "work/phase_clock.hpp"
+
+namespace pfv {
+
+void set_motion(const BuiltNetwork& built, const Problem& problem, const Packing& packing,
+                Motion& motion) {
+  const std::vector<int>& columns = built.grains.columns;
+  motion = no_motion(static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    auto own = motion.col(static_cast<Eigen::Index>(i));
+    if (packing.velocities.cols() > 0) own.head<3>() = packing.velocities.col(columns[i]);
+    if (problem.options.torques && packing.angular_velocities.cols() > 0)
+      own.tail<3>() = packing.angular_velocities.col(columns[i]);
+  }
+  set_faces(motion, problem.box, built.network.origin);
+}
+
+void find_rates(BuiltNetwork& built, const Problem& problem, const Motion& motion, WorkRecord& work,
+                Solution& solution) {
+  const PhaseClock clock(work.seconds.assemble);
+  make_volume_rates(built, problem, work.counts);
+  ++work.counts.volume_rate;
+  rates_of(built, motion, *problem.team, solution.rates);
+  spread_over_pores(rate_beyond(solution.growth, motion) + solution.debt_rate, built.throats,
+                    solution.rates);
+}
+
+void impose(const BuiltNetwork& built, Solution& solution) {
+  const auto& pores = built.unknowns.imposed_pores;
+  Eigen::VectorXd& relative = solution.relative_pressures;
+  impose_pressures(built.network, built.boundaries, solution.box, solution.time, relative);
+  const double first = pores.empty() ? 0.0 : relative[pores.front()];
+  double sum = 0.0;  // of the differences: where all are equal, the reference is exact
+  for (const int pore : pores) sum += relative[pore] - first;
+  solution.reference = pores.empty() ? 0.0 : first + sum / static_cast<double>(pores.size());
+  for (const int pore : pores) relative[pore] -= solution.reference;
+}
+
+namespace {
+
+/// What the unknown pressures have to drive away from each pore, m³/s.
+Eigen::VectorXd sources_of(const BuiltNetwork& built, const Solution& solution) {
+  Eigen::VectorXd sources = -solution.rates;
+  if (built.kept.compressible())
+    sources.array() +=
+        built.kept.storage.array() * (solution.previous_pressures.array() - solution.reference);
+  const Eigen::Vector3d& gradient = solution.box.pressure_gradient;
+  if (!gradient.isZero(0.0))
+    sources += gradient_sources(built.network, built.conductances.value, gradient);
+  return sources;
+}
+
+}  // namespace
+
+void solve_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& solver,
+                     WorkRecord& work, Solution& solution) {
+  const PhaseClock clock(work.seconds.solve);
+  solution.relative_pressures.resize(built.network.pores());
+  impose(built, solution);
+  right_hand_side(built.kept.system, built.unknowns, solution.box, sources_of(built, solution),
+                  solution.relative_pressures, solution.right_side);
+  if (built.unknowns.count > 0) {
+    solver.solve(solution.right_side, solution.unknown_pressures);
+    ++work.counts.solve;
+  }
+  const std::vector<int>& unknown = built.unknowns.of_pore;
+  for (std::size_t p = 0; p < unknown.size(); ++p)
+    if (unknown[p] >= 0)
+      solution.relative_pressures[static_cast<Eigen::Index>(p)] = solution.unknown_pressures[unknown[p]];
+  solution.pressures = solution.relative_pressures.array() + solution.reference;
+  if (!solution.pressures.allFinite())
+    throw SolverError(solver.name() +
+                      " returned pressures that are not finite; the conductances span too many "
+                      "orders of magnitude or the imposed values are too large");
+  if (&solver == built.kept.solver.get())
+    refine_pressures(built, problem, solver, built.kept.loses_digits, work, solution, [] {});
+}
+
+void refine_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& solver,
+                      std::optional<bool>& loses_digits, WorkRecord& work, Solution& solution,
+                      const std::function<void()>& follow) {
+  // A dense packing of 40 000 spheres loses 1.5e-10: that is not worth a second solve at each step.
+  constexpr double lost = 1e-9, exact = 1e-10, hopeless = 1e-6;
+  constexpr int sweeps = 4;
+  if (built.unknowns.count == 0 || is_iterative(problem.options.solver) ||
+      problem.options.precision == Precision::mixed || !loses_digits.value_or(true))
+    return;
+  std::int64_t& solves = work.counts.correction_solve;
+  double last = 0.0;
+  std::optional<double> rounding;  // seldom needed
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    const Eigen::VectorXd correction =
+        homogeneous_pressures(built, solver, continuity_defect(built, solution), solves);
+    const double largest = solution.relative_pressures.cwiseAbs().maxCoeff();
+    last = correction.cwiseAbs().maxCoeff();
+    if (last > exact * largest) {
+      if (!rounding) rounding = rounding_of_pressures(built, solution, solves);
+      if (last <= *rounding) return;
+    }
+    if (!loses_digits) loses_digits = last > lost * largest;
+    if (!*loses_digits || last <= exact * largest) return;
+    solution.relative_pressures += correction;
+    solution.pressures = solution.relative_pressures.array() + solution.reference;
+    follow();
+    last /= largest;
+  }
+  if (!(last <= hopeless)) throw too_far_apart(built, problem.fluid);
+}
+
+Loads pressure_loads(const BuiltNetwork& built, const Solution& solution) {
+  Loads sum = loads_of(built, solution.relative_pressures);
+  const Eigen::VectorXd growth =
+      forces_on_growth(solution.growth, built.throats, solution.relative_pressures);
+  for (const Face face : all_faces) {
+    const auto f = static_cast<Eigen::Index>(face);
+    sum.col(spheres_in(sum) + f).head<3>() += growth[f] * outward_normal(face);
+  }
+  return sum;
+}
+
+}  // namespace pfv

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "parallel/team.hpp"
+#include "pfv/box.hpp"
+#include "pfv/fluid.hpp"
+#include "pfv/options.hpp"
+
+#include <memory>
+
+namespace pfv {
+
+/// The problem as it is posed now, and who shares the work. All that a network depends on beside the grains.
+struct Problem {
+  const Box& box;
+  const Fluid& fluid;
+  const Options& options;
+  const std::shared_ptr<Team>& team;
+
+  bool lifts() const { return options.buoyancy && !fluid.gravity.isZero(0.0); }
+};
+
+}  // namespace pfv

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Boundaries and motions that leave the pressure undetermined: refused before anything is solved.
+#include "step/solvability.hpp"
+
+#include "pfv/error.hpp"
+#include "step/network_builder.hpp"
+#include "step/operators.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace pfv {
+
+namespace {
+
+bool any_boundary(const Box& box, bool (Boundary::*is)() const) {
+  for (int b = 0; b < boundary_count(box); ++b)
+    if ((boundary_of(box, b).*is)()) return true;
+  return false;
+}
+
+std::string place_of(const BuiltNetwork& built, int pore) {
+  const Eigen::Vector3d x = built.network.origin + built.network.pore_centres.col(pore);
+  std::ostringstream text;
+  text << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")";
+  return text.str();
+}
+
+/// Spheres of the packing around a set of pores, ascending.
+std::vector<int> spheres_around(const BuiltNetwork& built, const std::vector<int>& pores) {
+  std::vector<int> spheres;
+  for (int c = 0; c < built.network.cells(); ++c)
+    if (std::binary_search(pores.begin(), pores.end(), built.network.cell_pore[c]))
+      for (const Vertex vertex : built.network.cell_vertices[c])
+        if (!is_wall(vertex)) spheres.push_back(built.network.vertex_sphere[vertex]);
+  std::sort(spheres.begin(), spheres.end());
+  spheres.erase(std::unique(spheres.begin(), spheres.end()), spheres.end());
+  return spheres;
+}
+
+Culprits culprits_of(const BuiltNetwork& built, const std::vector<int>& spheres,
+                     const std::vector<int>& pores) {
+  Culprits culprits;
+  for (const int sphere : spheres) culprits.spheres.push_back(built.grains.spheres.ids[sphere]);
+  for (const int pore : pores) {
+    const Eigen::Vector3d x = built.network.origin + built.network.pore_centres.col(pore);
+    culprits.places.push_back({x[0], x[1], x[2]});
+  }
+  return culprits;
+}
+
+std::vector<int> spheres_at(const PoreNetwork& network, int throat) {
+  std::vector<int> spheres;
+  for (const Vertex vertex : network.facet_vertices[network.throat_facets[throat]])
+    if (!is_wall(vertex)) spheres.push_back(network.vertex_sphere[vertex]);
+  return spheres;
+}
+
+}  // namespace
+
+void refuse_undetermined(const Problem& problem, bool moving) {
+  const auto& [box, fluid, options, team] = problem;
+  // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
+  if (fluid.bulk_modulus || box.any_periodic() || any_boundary(box, &Boundary::imposes_pressure))
+    return;
+  if (moving)
+    throw InputError("the grains or faces move, the fluid is incompressible, and no face, patch "
+                     "or region has a pressure: nothing determines the pressure; give a pressure to a face, "
+                     "or a bulk modulus");
+  if (any_boundary(box, &Boundary::drives_flux))
+    throw InputError("a flux is imposed, the fluid is incompressible, and no face, patch or region has a "
+                     "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
+                     "modulus");
+}
+
+/// The factor needs the digits by which what leaves a group of pores differs from what its own throats
+/// could carry: with fewer than sixteen there are none left.
+SolverError too_far_apart(const BuiltNetwork& built, const Fluid& fluid,
+                          const std::string& reason) {
+  const PoreNetwork& network = built.network;
+  const std::vector<double>& c = built.conductances.value;
+  int weakest = -1, strongest = -1;
+  for (int t = 0; t < network.throats(); ++t) {
+    if (!(c[t] > 0.0)) continue;
+    if (weakest < 0 || c[t] < c[weakest]) weakest = t;
+    if (strongest < 0 || c[t] > c[strongest]) strongest = t;
+  }
+  if (weakest < 0) return SolverError(reason);
+  std::vector<int> named, pores;
+  const auto name = [&](int t) {
+    const std::vector<int> spheres = spheres_at(network, t);
+    named.insert(named.end(), spheres.begin(), spheres.end());
+    pores.push_back(network.throat_pores[t][0]);
+    std::ostringstream text;
+    text << c[t] << " m3/(Pa s) near " << place_of(built, network.throat_pores[t][0]) << " at "
+         << sphere_list(built.grains.spheres.ids, spheres);
+    return text.str();
+  };
+  std::string text =
+      "the conductances of the throats reach from " + name(weakest) + " to " + name(strongest) +
+      (fluid.bulk_modulus ? ", and the fluid stores little in a time step" : "") +
+      ": too far apart for sixteen digits; remove spheres that nearly coincide or close their "
+      "pores" + (fluid.bulk_modulus ? ", or take a shorter time step" : "");
+  if (!reason.empty()) text += " (" + reason + ")";
+  return SolverError(text, culprits_of(built, named, pores));
+}
+
+namespace {
+
+/// Where grains and faces move all alike, every rate is the round-off (m³/s) of what cancels in it.
+double rounding_of_rates(const BuiltNetwork& built, const Solution& solution) {
+  constexpr double round_off = 1e-13;
+  return solution.moving ? round_off * gross_rates(built, solution.motion).maxCoeff() : 0.0;
+}
+
+/// What must leave an isolated set of pores, m³/s, and what it is the sum of.
+struct Forced {
+  double net = 0.0, gross = 0.0;
+};
+
+Forced forced_out(const BuiltNetwork& built, const Solution& solution, const Isolated& isolated) {
+  Forced forced;
+  for (const int pore : isolated.pores) {
+    forced.net -= solution.rates[pore];
+    forced.gross += std::abs(solution.rates[pore]);
+  }
+  for (std::size_t b = 0; b < built.unknowns.of_boundary.size(); ++b) {
+    const int shared = built.unknowns.of_boundary[b];
+    const bool fed = shared >= 0 && std::any_of(isolated.pores.begin(), isolated.pores.end(),
+                                                [&](int pore) {
+                                                  return built.unknowns.of_pore[pore] == shared;
+                                                });
+    if (!fed) continue;
+    const double flux = boundary_of(solution.box, static_cast<int>(b)).value;
+    forced.net += flux;
+    forced.gross += std::abs(flux);
+  }
+  return forced;
+}
+
+}  // namespace
+
+void refuse_isolated(const BuiltNetwork& built, const Solution& solution,
+                     const std::vector<Isolated>& held) {
+  for (const Isolated& isolated : held) {
+    const auto [net, gross] = forced_out(built, solution, isolated);
+    // rates are sums of area times velocity: their own round-off is no change of volume
+    const double noise = 1e-12 * solution.rates.cwiseAbs().maxCoeff();
+    if (std::abs(net) <= 1e-10 * gross + noise || std::abs(net) <= rounding_of_rates(built, solution)) continue;
+    std::ostringstream rate;
+    rate << net;
+    const std::vector<int> spheres = spheres_around(built, isolated.pores);
+    throw InputError(
+        std::to_string(isolated.pores.size()) + " pore(s) near " +
+            place_of(built, isolated.pores.front()) + " between " +
+            sphere_list(built.grains.spheres.ids, spheres) +
+            " are cut off from every pressure, but " + rate.str() +
+            " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk "
+            "modulus, or reduce the overlaps",
+        culprits_of(built, spheres, isolated.pores));
+  }
+}
+
+}  // namespace pfv

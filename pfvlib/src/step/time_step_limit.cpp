@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "step/time_step_limit.hpp"
+
+#include "pfv/error.hpp"
+#include "physics/time_step_limit.hpp"
+#include "step/operators.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace pfv {
+
+namespace {
+
+double limit_of(double eigenvalue) {
+  return eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
+}
+
+/// 1 / sqrt(m) of each degree of freedom; faces are guided along their axes.
+Matrix6Xd inverse_roots(const BuiltNetwork& built, const Eigen::VectorXd& masses) {
+  const int spheres = built.grains.spheres.size();
+  Matrix6Xd root = no_motion(spheres);
+  for (int i = 0; i < spheres; ++i) {
+    const double mass = masses[built.grains.columns[i]];
+    root.col(i).head<3>().setConstant(1.0 / std::sqrt(mass));
+    root.col(i).tail<3>().setConstant(
+        1.0 / std::sqrt(inertia_of(mass, built.grains.spheres.radii[i])));
+  }
+  const Eigen::Index packed = masses.size() - face_columns;
+  for (const Face face : all_faces) {
+    const int f = static_cast<int>(face);
+    root(axis_of(face), spheres + f) = 1.0 / std::sqrt(masses[packed + f]);
+  }
+  return root;
+}
+
+/// Largest eigenvalue of M^-1 S G^-1 S^T, 1/s (with geometric rates E in place of S^T). The operator is
+/// similar to it and, but for those, symmetric.
+double largest_drag(const BuiltNetwork& built, const Problem& problem,
+                    const Eigen::VectorXd& masses, std::int64_t& solves) {
+  if (built.unknowns.count == 0 || built.grains.spheres.size() == 0) return 0.0;
+  const Matrix6Xd root = inverse_roots(built, masses);
+  Eigen::VectorXd opened;
+  const auto drag = [&](const Eigen::VectorXd& u) {
+    const Motion v = (u.reshaped(6, root.cols()).array() * root.array()).matrix();
+    rates_of(built, v, *problem.team, opened);
+    const Loads load = loads_of(built, homogeneous_pressures(built, opened, solves)) -
+                       shear_forces_of(built, problem.fluid.viscosity, v);
+    return Eigen::VectorXd((load.array() * root.array()).matrix().reshaped());
+  };
+  return largest_eigenvalue(drag, static_cast<int>(root.size()));
+}
+
+}  // namespace
+
+double TimeStepLimit::of(BuiltNetwork& built, const Problem& problem, Eigen::Index spheres,
+                         const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons,
+                         WorkRecord& work) {
+  if (masses.size() != spheres)
+    throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
+                     std::to_string(spheres) + " spheres; give one a sphere");
+  Eigen::VectorXd all(spheres + face_columns);
+  all.head(spheres) = masses;
+  for (const Face face : all_faces) {
+    const int f = static_cast<int>(face);
+    all[spheres + f] = pistons[f].mass;
+  }
+  if (!(all.array() > 0.0).all())
+    throw InputError("time step limit: a mass is not a positive number; give kg");
+  if (limit_ && all.size() == masses_.size() && all == masses_) return *limit_;
+  limit_.reset();
+  make_force_matrices(built, problem, work.counts);
+  make_volume_rates(built, problem, work.counts);
+  masses_ = all;
+  limit_ = limit_of(largest_drag(built, problem, all, work.counts.limit_solve));
+  return *limit_;
+}
+
+}  // namespace pfv

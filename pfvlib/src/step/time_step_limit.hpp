@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/flow_model.hpp"
+#include "step/problem.hpp"
+#include "step/built_network.hpp"
+#include "work/work_record.hpp"
+
+#include <array>
+#include <optional>
+
+namespace pfv {
+
+/// The limit of the explicit step, dt < 2 / lambda_max(M^-1 S G^-1 S^T), kept while factor and masses stay.
+class TimeStepLimit {
+ public:
+  /// s; infinite where nothing resists. `masses` of the packing's spheres, kg. Cost: some 20 to 40 solves,
+  /// none when it is kept. Throws InputError.
+  double of(BuiltNetwork& built, const Problem& problem, Eigen::Index spheres,
+            const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons, WorkRecord& work);
+  void forget() { limit_.reset(); }
+
+ private:
+  std::optional<double> limit_;
+  Eigen::VectorXd masses_;  ///< that it belongs to: of the spheres and the faces
+};
+
+}  // namespace pfv
