@@ -63,6 +63,7 @@ int run(int argc, char** argv) {
       "                --grain-density 2600 --piston zhi:0.2 --contact-stiffness 1e4");
   CLI::App* settings = app.add_subcommand("settings", "the table of all settings, as a page of the documentation");
   settings->set_version_flag("--version", version_line);
+  const CLI::Option* of_fix = settings->add_flag("--fix", "the keywords of fix pfv instead, as its page has them");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // help or version
@@ -78,7 +79,7 @@ int run(int argc, char** argv) {
     return succeeded;
   }
   if (settings->parsed()) {
-    pfv::app::write_settings(std::cout);
+    of_fix->count() > 0 ? pfv::app::write_fix_syntax(std::cout) : pfv::app::write_settings(std::cout);
     return succeeded;
   }
   if (time_step->parsed()) {

@@ -30,6 +30,29 @@ std::string readers_of(const Setting& setting) {
   return readers;
 }
 
+/// "yes or no"
+std::string spoken(std::string values) {
+  for (std::size_t at; (at = values.find('|')) != std::string::npos;) values.replace(at, 1, " or ");
+  return values;
+}
+
+/// "MU (Pa s) = what it is (default 0.001)"
+std::string explanation(const Setting& setting) {
+  const std::string unit = setting.unit;
+  return (unit.empty() ? "" : setting.values + " (" + unit + ") = ") + setting.help + " (default " +
+         setting.text(Settings{}) + ")";
+}
+
+/// What follows the name of a grid.
+void write_grid_syntax(std::ostream& out) {
+  for (const Setting& setting : all_settings())
+    if (setting.hosts.of_grid) out << " [" << setting.name << ' ' << setting.values << ']';
+  out << '\n';
+  for (const Setting& setting : all_settings())
+    if (setting.hosts.of_grid)
+      out << "  " << setting.name << ' ' << spoken(setting.values) << " = " << explanation(setting) << '\n';
+}
+
 void write_row(const Setting& setting, std::ostream& out) {
   const std::string unit = setting.unit;
   const std::string option = setting.hosts.command ? "`" + option_of(setting) + "`" : "";
@@ -54,6 +77,17 @@ void write_settings(std::ostream& out) {
           << "|---|---|---|---|---|---|---|---|\n";
     }
     write_row(setting, out);
+  }
+}
+
+void write_fix_syntax(std::ostream& out) {
+  for (const Setting& setting : all_settings()) {
+    if (!setting.hosts.fix) continue;
+    const bool is_model = setting.name == std::string("model");
+    out << setting.name << " values = " << spoken(setting.values);
+    if (is_model) out << ' ' << setting_named("cells")->values;
+    is_model ? write_grid_syntax(out) : void(out << '\n');
+    out << "  " << explanation(setting) << '\n';
   }
 }
 
