@@ -35,7 +35,7 @@ PFV_PRIVATE_MEMBER(PfvServoStyle, int, MeshModuleStressServo, ctrl_style_)
 
 namespace {
 
-using Source = PfvFace::Source;
+using Source = PfvFaceSource::Kind;
 
 /// Nodes of a mesh may stray this much from their plane, as a part of the mesh's size: STL files
 /// carry about seven digits.
@@ -97,36 +97,36 @@ const MeshModuleStressServo* piston_servo(FixMeshSurface* mesh, int axis) {
 
 }  // namespace
 
-void PfvFaceSources::bind(const std::array<PfvFace, 6>& faces) {
-  faces_ = faces;
+void PfvFaceSources::bind(const std::array<PfvFaceSource, 6>& sources) {
+  sources_ = sources;
   meshes_.fill(nullptr);
   velocities_.fill(0.0);
   for (int number = 0; number < 6; ++number) {
-    const PfvFace& face = faces_[number];
-    if (face.source == Source::plane) positions_[number] = face.plane;
-    if (face.source == Source::wall) bind_wall(face, number);
-    if (face.source == Source::mesh) bind_mesh(face, number);
+    const PfvFaceSource& source = sources_[number];
+    if (source.kind == Source::plane) positions_[number] = source.plane;
+    if (source.kind == Source::wall) bind_wall(source, number);
+    if (source.kind == Source::mesh) bind_mesh(source, number);
   }
 }
 
-void PfvFaceSources::bind_wall(const PfvFace& face, int number) {
-  auto* wall = dynamic_cast<FixWallGran*>(find_fix(modify, number, face.fix_id));
-  if (!wall) fail(number, "fix '" + face.fix_id + "' is no wall/gran");
+void PfvFaceSources::bind_wall(const PfvFaceSource& source, int number) {
+  auto* wall = dynamic_cast<FixWallGran*>(find_fix(modify, number, source.fix_id));
+  if (!wall) fail(number, "fix '" + source.fix_id + "' is no wall/gran");
   if (wall->is_mesh_wall())
-    fail(number, "fix '" + face.fix_id + "' is a mesh wall; name its mesh with `mesh FIX_ID`");
+    fail(number, "fix '" + source.fix_id + "' is a mesh wall; name its mesh with `mesh FIX_ID`");
   PrimitiveWall* primitive = wall->primitiveWall();
   if (primitive->axis() >= 0)
-    fail(number, "fix '" + face.fix_id + "' is a cylinder; a face needs a plane");
+    fail(number, "fix '" + source.fix_id + "' is a cylinder; a face needs a plane");
   const Plane plane = plane_of(primitive);
   if (plane.axis != number / 2)
-    fail(number, "wall '" + face.fix_id + "' is not normal to the " + axis_name(number) + " axis");
+    fail(number, "wall '" + source.fix_id + "' is not normal to the " + axis_name(number) + " axis");
   positions_[number] = plane.position;
 }
 
-void PfvFaceSources::bind_mesh(const PfvFace& face, int number) {
-  auto* mesh = dynamic_cast<FixMeshSurface*>(find_fix(modify, number, face.fix_id));
+void PfvFaceSources::bind_mesh(const PfvFaceSource& source, int number) {
+  auto* mesh = dynamic_cast<FixMeshSurface*>(find_fix(modify, number, source.fix_id));
   if (!mesh)
-    fail(number, "fix '" + face.fix_id + "' is no mesh/surface; name a primitive plane with "
+    fail(number, "fix '" + source.fix_id + "' is no mesh/surface; name a primitive plane with "
                  "`wall FIX_ID`");
   meshes_[number] = mesh;
 }
@@ -163,7 +163,7 @@ void PfvFaceSources::read_mesh(int number) {
   const auto extent = [&](int k) { return -global[3 + k] - global[k]; };
   if (extent(axis) > planarity * std::max({extent(0), extent(1), extent(2)})) {
     std::ostringstream text;
-    text << "mesh '" << faces_[number].fix_id << "' is not a plane normal to the "
+    text << "mesh '" << sources_[number].fix_id << "' is not a plane normal to the "
          << axis_name(number) << " axis: its nodes reach from " << global[axis] << " to "
          << -global[3 + axis] << " m along it";
     fail(number, text.str());
@@ -218,7 +218,7 @@ pfv::FaceCondition PfvFaceSources::condition(int number, pfv::Wall wall,
 void PfvFaceSources::follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& centres,
                                    const Eigen::Ref<const Eigen::VectorXd>& radii) {
   for (int number = 0; number < 6; ++number) {
-    if (faces_[number].source != Source::extent) continue;
+    if (sources_[number].kind != Source::extent) continue;
     if (radii.size() == 0) fail(number, "`extent` has no grain to follow; the group is empty");
     const auto coordinates = centres.row(number / 2).transpose();
     positions_[number] = pfv::is_upper(pfv::all_faces[number])

@@ -26,7 +26,7 @@ class PfvFaceSources : protected Pointers {
 
   /// Finds the walls and meshes that the faces name. Throws pfv::InputError, the same on all ranks,
   /// where one is missing or is no plane normal to the face's axis.
-  void bind(const std::array<PfvFace, 6>& faces);
+  void bind(const std::array<PfvFaceSource, 6>& sources);
 
   /// Reads where planes, walls and meshes are now; collective. Leaves `extent` faces alone. Throws
   /// pfv::InputError, the same on all ranks, for a mesh that is no longer normal to its axis.
@@ -63,12 +63,12 @@ class PfvFaceSources : protected Pointers {
   void push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const;
 
  private:
-  void bind_wall(const PfvFace& face, int number);
-  void bind_mesh(const PfvFace& face, int number);
+  void bind_wall(const PfvFaceSource& source, int number);
+  void bind_mesh(const PfvFaceSource& source, int number);
   void read_mesh(int number);
   void read_gliding(int number);
 
-  std::array<PfvFace, 6> faces_;
+  std::array<PfvFaceSource, 6> sources_;
   std::array<class FixMeshSurface*, 6> meshes_{};
   std::array<double, 6> begun_{};  ///< force along the face's axis that this rank's module held, N
   std::array<double, 6> positions_{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fix_pfv.h"
 
+#include "pfv/darcy_grid.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
@@ -40,7 +41,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   global_freq = 1;
   peratom_flag = 1;
   size_peratom_cols = PfvGrainExchange::returned_width;
-  if (settings_.couple_error) interval_.emplace(*settings_.couple_error);
+  if (settings_.steps.couple_error) interval_.emplace(*settings_.steps.couple_error);
   peratom_freq = 1;
   restart_global = 1;
 }
@@ -52,7 +53,7 @@ void FixPfv::post_create() {
   std::vector<const char*> words{property_id.c_str(), group->names[igroup], "property/atom",
                                  property_id.c_str(), "vector", "no", "no", "no"};
   words.insert(words.end(),
-               settings_.couple_error ? PfvGrainExchange::width_with_slopes
+               settings_.steps.couple_error ? PfvGrainExchange::width_with_slopes
                                       : PfvGrainExchange::returned_width,
                "0.");
   per_atom_ = modify->add_fix_property_atom(static_cast<int>(words.size()),
@@ -72,10 +73,10 @@ void FixPfv::init() {
   check_variables();
   check_other_fixes();
   bind_coupling();
-  everywhere([&] { faces_.bind(settings_.faces); });
+  everywhere([&] { faces_.bind(settings_.sources); });
   array_atom = per_atom_->array_atom;
   // computes behind variables have to be ready for the setup's evaluation
-  if (has_variables()) modify->addstep_compute_all(update->ntimestep);
+  if (!settings_.bindings.empty()) modify->addstep_compute_all(update->ntimestep);
 }
 
 // ---------------------------------------------------------------------------------------- errors
@@ -135,13 +136,12 @@ void FixPfv::check_environment() {
 }
 
 void FixPfv::check_variables() {
-  for (const PfvValue* value : values_of(settings_)) {
-    if (value->variable.empty()) continue;
-    const int index = input->variable->find(const_cast<char*>(value->variable.c_str()));
+  for (const PfvBinding& binding : settings_.bindings) {
+    const int index = input->variable->find(const_cast<char*>(binding.variable.c_str()));
     if (index < 0)
-      stop(FLERR, "there is no variable '" + value->variable + "'");
+      stop(FLERR, "there is no variable '" + binding.variable + "'");
     if (!input->variable->equalstyle(index))
-      stop(FLERR, "variable '" + value->variable + "' is not of equal style");
+      stop(FLERR, "variable '" + binding.variable + "' is not of equal style");
   }
 }
 
@@ -164,49 +164,32 @@ void FixPfv::check_other_fixes() {
 
 // -------------------------------------------------------------------------------------- boundaries
 
-double FixPfv::value_of(const PfvValue& value) {
-  if (value.variable.empty()) return value.number;
-  const int index = input->variable->find(const_cast<char*>(value.variable.c_str()));
-  return input->variable->compute_equal(index);
-}
-
-pfv::Boundary FixPfv::boundary_of(const PfvBoundary& boundary) {
-  return {boundary.kind, value_of(boundary.value), {}};
-}
-
-pfv::Boundary FixPfv::boundary_of(const PfvFace& face) {
-  if (!face.profile) return boundary_of(face.boundary);
-  const PfvCosine& cosine = *face.profile;
-  const double mean = value_of(cosine.mean), amplitude = value_of(cosine.amplitude);
-  const auto pressure = [axis = cosine.axis, half = cosine.half_period, mean, amplitude](
-                            const Eigen::Vector3d& place, double) {
-    return mean + amplitude * std::cos(M_PI * place[axis] / half);
-  };
-  return {pfv::Boundary::Kind::pressure, mean, pressure};
-}
-
-bool FixPfv::has_variables() const {
-  const auto values = values_of(settings_);
-  return std::any_of(values.begin(), values.end(),
-                     [](const PfvValue* value) { return !value->variable.empty(); });
+/// Evaluates the variables; of one that is missing, check_variables has told.
+void FixPfv::update_bound_numbers() {
+  if (settings_.bindings.empty()) return;
+  modify->clearstep_compute();
+  for (const PfvBinding& binding : settings_.bindings) {
+    const int index = input->variable->find(const_cast<char*>(binding.variable.c_str()));
+    bound_number(settings_, binding) = input->variable->compute_equal(index);
+  }
+  modify->addstep_compute(update->ntimestep +
+                          (adapts() ? 1 : std::max(1, settings_.steps.couple_every - steps_since_flow_)));
 }
 
 /// Boundary conditions and velocities of the faces; their positions follow in place_faces.
 pfv::Box FixPfv::current_box() {
-  const bool variables = has_variables();
-  if (variables) modify->clearstep_compute();
-  pfv::Box box;
+  update_bound_numbers();
+  pfv::Box box = settings_.box;
   for (int number = 0; number < 6; ++number) {
-    const PfvFace& face = settings_.faces[number];
-    box.faces[number] = faces_.condition(number, face.wall, boundary_of(face));
+    pfv::FaceCondition& face = box.faces[number];
+    if (const auto& cosine = settings_.profiles[number]) {
+      face.boundary.value = cosine->mean;
+      face.boundary.profile = [cosine = *cosine](const Eigen::Vector3d& place, double) {
+        return cosine.mean + cosine.amplitude * std::cos(M_PI * place[cosine.axis] / cosine.half_period);
+      };
+    }
+    face = faces_.condition(number, face.wall, face.boundary);
   }
-  for (const PfvPatch& patch : settings_.patches)
-    box.patches.push_back({patch.face, patch.rectangle, boundary_of(patch.boundary)});
-  for (const PfvRegion& region : settings_.regions)
-    box.regions.push_back({region.lower, region.upper, boundary_of(region.boundary)});
-  if (variables)
-    modify->addstep_compute(update->ntimestep +
-                            (adapts() ? 1 : std::max(1, settings_.couple_every - steps_since_flow_)));
   return box;
 }
 
@@ -243,7 +226,7 @@ void FixPfv::prepare_flow(const pfv::Box& box) {
     flow_->evaluate(grains_.packing(), flow_step());
     restored_ = flow_->state();
   }
-  flow_ = pfv::make_flow(box, settings_.fluid, settings_.options, settings_.grid);
+  flow_ = pfv::make_flow(box, settings_.fluid, settings_.options, settings_.grid());
   if (restored_) flow_->set_state(*restored_);
   restored_.reset();
 }
@@ -366,10 +349,10 @@ void FixPfv::advance() {
   box_ = current_box();
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
-  const bool mean = settings_.couple_every > 1 || (adapts() && steps > 1);
+  const bool mean = settings_.steps.couple_every > 1 || (adapts() && steps > 1);
   if (mean)
     for (int number = 0; number < 6; ++number)
-      if (settings_.faces[number].source == PfvFace::Source::mesh)
+      if (settings_.sources[number].kind == PfvFaceSource::Kind::mesh)
         box_.faces[number].velocity =
             (faces_.positions()[number] - last_positions_[number]) / elapsed_;
   last_positions_ = faces_.positions();
@@ -392,7 +375,7 @@ void FixPfv::after_flow_call() {
   });
   grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{},
                   comm->me == 0 && interval_ ? &interval_->held() : nullptr,
-                  per_atom_->array_atom, settings_.couple_error.has_value());
+                  per_atom_->array_atom, settings_.steps.couple_error.has_value());
 }
 
 void FixPfv::apply_forces() {
@@ -452,7 +435,7 @@ void FixPfv::write_restart(FILE* file) {
     } else if (restored_) {
       record.flow = *restored_;
     }
-    if (settings_.couple_every > 1 || settings_.couple_error) record.last_grains = last_grains_;
+    if (settings_.steps.couple_every > 1 || settings_.steps.couple_error) record.last_grains = last_grains_;
     record.written = files_->written();
     const std::vector<double> data = pack(record);
     const int bytes = static_cast<int>(data.size() * sizeof(double));

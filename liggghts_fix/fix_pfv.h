@@ -69,10 +69,7 @@ class FixPfv : public Fix {
 
   // one flow call
   pfv::Box current_box();
-  double value_of(const PfvValue& value);
-  pfv::Boundary boundary_of(const PfvBoundary& boundary);
-  pfv::Boundary boundary_of(const PfvFace& face);
-  bool has_variables() const;
+  void update_bound_numbers();
   void read_host();
   void advance();
   void prepare_flow(const pfv::Box& box);

@@ -55,7 +55,7 @@ void FixPfv::print_phases() {
     const char* name;
     double seconds;
     std::int64_t count;
-  } phases[] = {{settings_.grid ? "porosity" : "triangulate", done.seconds.triangulate, done.counts.triangulate},
+  } phases[] = {{settings_.grid() ? "porosity" : "triangulate", done.seconds.triangulate, done.counts.triangulate},
                 {"throats", done.seconds.throats, done.counts.triangulate},
                 {"assemble", done.seconds.assemble, done.counts.triangulate},
                 {"order", done.seconds.order, done.counts.order},
@@ -102,7 +102,7 @@ void FixPfv::print_phases() {
     for (const std::string& reason : done.outside_range)
       text += "WARNING: the permeability's estimated error may not hold: " + reason + "\n";
   }
-  if (!cited_ && !settings_.grid)
+  if (!cited_ && !settings_.grid())
     text +=
         "Please cite, for the flow and for its coupling with the grains:\n"
         "  Chareyre, Cortis, Catalano, Barthelemy (2012) Pore-scale modeling of viscous flow and\n"

@@ -14,16 +14,16 @@
 namespace LAMMPS_NS {
 
 /// Whether the interval is the flow's own choice.
-bool FixPfv::adapts() const { return settings_.couple_error.has_value(); }
+bool FixPfv::adapts() const { return settings_.steps.couple_error.has_value(); }
 
 bool FixPfv::solve_due() {
-  if (!adapts()) return steps_since_flow_ >= settings_.couple_every;
+  if (!adapts()) return steps_since_flow_ >= settings_.steps.couple_every;
   return steps_since_flow_ >= plan_.steps || imposed_values_changed() || grains_jumped();
 }
 
 /// Variables may change a boundary at any step; a change beyond the tolerance is solved for at once.
 bool FixPfv::imposed_values_changed() {
-  if (!has_variables()) return false;
+  if (settings_.bindings.empty()) return false;
   const pfv::Box now = current_box();
   double change = 0.0, largest = 0.0;
   const auto compare = [&](const pfv::Boundary& a, const pfv::Boundary& b) {
@@ -38,7 +38,7 @@ bool FixPfv::imposed_values_changed() {
     compare(now.patches[i].boundary, box_.patches[i].boundary);
   for (std::size_t i = 0; i < now.regions.size(); ++i)
     compare(now.regions[i].boundary, box_.regions[i].boundary);
-  return change > settings_.couple_error.value() * largest;
+  return change > settings_.steps.couple_error.value() * largest;
 }
 
 /// Sum of |v| r² of the flow's grains, m³/s; collective.
@@ -59,7 +59,7 @@ bool FixPfv::grains_jumped() {
   constexpr double foreseen = 10.0;  // tolerances
   if (steps_since_flow_ < 2) return false;
   const double change = std::abs(gross_motion() - plan_.gross_motion);
-  return change * plan_.share_of_fluid > foreseen * settings_.couple_error.value() * plan_.gross_motion;
+  return change * plan_.share_of_fluid > foreseen * settings_.steps.couple_error.value() * plan_.gross_motion;
 }
 
 /// Steps over which loads can be held at most: well within the limit of the explicit coupling, and one with a

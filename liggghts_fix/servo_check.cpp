@@ -58,7 +58,7 @@ void FixPfv::check_servos() {
   const std::array<PfvServoGain, 6> gains = faces_.proportional_gains();
   Vector6 roots;
   for (int face = 0; face < 6; ++face) roots[face] = std::sqrt(gains[face].gain);
-  if (!settings_.time_step_check || roots.isZero(0.0)) return;
+  if (!settings_.steps.time_step_check || roots.isZero(0.0)) return;
   const Matrix6 resistances = resistances_to(gains);
   // K R has the eigenvalues of this, which is symmetric as far as S is the transpose of E
   const Matrix6 loop =
@@ -72,7 +72,7 @@ void FixPfv::check_servos() {
   // A servo that the fluid alone cannot bring to its target moves with vel_max until grains help, and
   // only then swings; grains that follow within a step leave less of the resistance than is known here.
   const bool reaches_target = gains[worst].kp <= 1.0 + swing;
-  if (swing > 1.0 && reaches_target && settings_.coupling == PfvCoupling::explicit_forces)
+  if (swing > 1.0 && reaches_target && settings_.steps.coupling == pfv::Coupling::explicit_step)
     throw pfv::InputError(text);
   error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + text).c_str());
 }
@@ -87,7 +87,7 @@ std::string FixPfv::swinging_servo(int face, const PfvServoGain& servo, double r
                 "servos %.4g; above 1, less what contacts take, the plate is thrown to and fro. Take kp %.3g "
                 "(and for other servos as much less), or make it a piston of mass m: kp 0 and ki "
                 "target/(vel_max m)",
-                pfv::name_of(pfv::all_faces[face]), settings_.faces[face].fix_id.c_str(),
+                pfv::name_of(pfv::all_faces[face]), settings_.sources[face].fix_id.c_str(),
                 swing > 1.0 ? "swings" : "may swing", servo.gain, servo.kp, resistance,
                 servo.gain * resistance, swing, servo.kp * calm / swing);
   return text;

@@ -9,37 +9,24 @@
 
 namespace LAMMPS_NS {
 
-namespace {
-
-pfv::Coupling in_library(PfvCoupling coupling) {
-  switch (coupling) {
-    case PfvCoupling::staged: return pfv::Coupling::staged;
-    case PfvCoupling::implicit: return pfv::Coupling::implicit;
-    case PfvCoupling::automatic: return pfv::Coupling::automatic;
-    default: return pfv::Coupling::explicit_step;
-  }
-}
-
-}  // namespace
-
 void FixPfv::bind_coupling() {
   const PfvOtherFixes others(lmp, *this);
   groups_ = others.groups();
   rigid_bodies_ = others.rigid_bodies();
   obstacle_.clear();
   if (!needs_forces()) return;
-  obstacle_ = settings_.couple_every > 1
+  obstacle_ = settings_.steps.couple_every > 1
                   ? "staged and implicit coupling need `couple_every 1`; they integrate the drag over "
                     "each step"
                   : others.obstacle_to_long_steps();
-  if (settings_.coupling != PfvCoupling::automatic && !obstacle_.empty())
+  if (settings_.steps.coupling != pfv::Coupling::automatic && !obstacle_.empty())
     stop(FLERR, obstacle_);
 }
 
 /// Whether the flow may have to know the forces that act beside its own.
-bool FixPfv::needs_forces() const { return settings_.coupling != PfvCoupling::explicit_forces; }
+bool FixPfv::needs_forces() const { return settings_.steps.coupling != pfv::Coupling::explicit_step; }
 
-double FixPfv::flow_step() const { return settings_.couple_every * update->dt; }
+double FixPfv::flow_step() const { return settings_.steps.couple_every * update->dt; }
 
 double FixPfv::time_step_limit() { return flow_->time_step_limit(grains_.masses(), pistons_); }
 
@@ -48,13 +35,13 @@ void FixPfv::call_flow(double dt, bool commit) {
   const pfv::GrainDynamics dynamics =
       needs_forces() ? grains_.dynamics(pistons_) : pfv::GrainDynamics{};
   flow_->advance(grains_.packing(), dt,
-                 {in_library(settings_.coupling), needs_forces() ? &dynamics : nullptr, commit,
-                  settings_.safety, obstacle_});
+                 {settings_.steps.coupling, needs_forces() ? &dynamics : nullptr, commit,
+                  settings_.steps.safety, obstacle_});
 }
 
 /// Says where the time step stands, at the beginning of a run; rank 0.
 void FixPfv::check_time_step() {
-  if (!settings_.time_step_check && !needs_forces()) return;
+  if (!settings_.steps.time_step_check && !needs_forces()) return;
   const pfv::TimeStepCheck check = pfv::check_time_step(*flow_, grains_.packing(), grains_.masses(),
                                                         pistons_, flow_step());
   const std::string head = std::string("Fix pfv (id ") + id + "): ";
@@ -62,7 +49,7 @@ void FixPfv::check_time_step() {
   const char* remedy = rigid_bodies_ ? " (rigid bodies have no other coupling)"
                                      : ", `coupling staged` or `coupling implicit`";
   for (const std::string& warning :
-       pfv::warnings_of(check, settings_.couple_every, settings_.safety, remedy))
+       pfv::warnings_of(check, settings_.steps.couple_every, settings_.steps.safety, remedy))
     error->warning(FLERR, (head + warning).c_str());
 }
 

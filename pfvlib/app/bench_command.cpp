@@ -332,8 +332,8 @@ void bench(const BenchArguments& arguments, std::ostream& out) {
   if (arguments.predict && sizes.size() < 2)
     throw InputError("--predict needs at least two sizes to fit: give more with --spheres");
   Options options;
-  options.conductance = conductance_law_named(arguments.conductance);
-  options.precision = precision_named(arguments.precision);
+  options.conductance = named<ConductanceLaw>(arguments.conductance);
+  options.precision = named<Precision>(arguments.precision);
   options.threads = whole_number("--threads", arguments.threads, 1, 64);
   const double load_before = load();
   const std::int64_t bare_memory = peak_memory();
@@ -341,8 +341,8 @@ void bench(const BenchArguments& arguments, std::ostream& out) {
   for (const int size : sizes) {
     const PackingArrays packing = sinking_packing(size);
     for (const std::string& solver : arguments.solvers) {
-      options.solver = solver_named(solver);
-      options.ordering = ordering_named(arguments.ordering);
+      options.solver = named<SolverKind>(solver);
+      options.ordering = named<OrderingKind>(arguments.ordering);
       check(options);
       rows.push_back(measure(packing, options, repeat, bare_memory));
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "face_arguments.hpp"
 
-#include "io/number_text.hpp"
-#include "io/text_lines.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
 #include "pfv/error.hpp"
+#include "pfv/words.hpp"
 
 #include <array>
 #include <optional>
@@ -15,7 +16,18 @@ namespace {
 
 using detail::quoted;
 
-constexpr const char* face_items = "pressure=P, flux=Q, sealed, wall=no_slip|symmetry, velocity=V";
+/// "sealed, pressure=P, flux=Q"; those that are open alone: of a region.
+std::string boundary_items(bool with_sealed = true) {
+  std::string items;
+  for (const BoundaryKind& one : boundary_kinds) {
+    if (!one.symbol && !with_sealed) continue;
+    items += (items.empty() ? "" : ", ") + std::string(one.name);
+    if (one.symbol) items += std::string("=") + one.symbol;
+  }
+  return items;
+}
+
+std::string face_items() { return boundary_items() + ", wall=" + names_of<Wall>("|") + ", velocity=V"; }
 
 [[noreturn]] void fail(const std::string& where, const std::string& what) {
   throw InputError(where + ": " + what);
@@ -46,11 +58,13 @@ const std::string& value_of(const std::string& where, const Item& item) {
 
 /// The boundary that an item names, or nothing when it is about something else.
 std::optional<Boundary> boundary_of(const std::string& where, const Item& item) {
-  if (item.key == "pressure") return Boundary::pressure(number(where, value_of(where, item)));
-  if (item.key == "flux") return Boundary::flux(number(where, value_of(where, item)));
-  if (item.key != "sealed") return std::nullopt;
-  if (item.value) fail(where, "sealed takes no value: write sealed");
-  return Boundary::sealed();
+  for (const BoundaryKind& one : boundary_kinds) {
+    if (item.key != one.name) continue;
+    if (one.symbol) return Boundary{one.kind, number(where, value_of(where, item)), {}};
+    if (item.value) fail(where, item.key + " takes no value: write " + item.key);
+    return Boundary{one.kind, 0.0, {}};
+  }
+  return std::nullopt;
 }
 
 /// Collects the items of one face, which may come in several arguments.
@@ -69,7 +83,7 @@ class FaceItems {
       claim(where, "velocity", item);
       face_.velocity = number(where, value_of(where, item));
     } else {
-      fail(where, "unknown item " + quoted(item.key) + ": use " + face_items);
+      fail(where, "unknown item " + quoted(item.key) + ": use " + face_items());
     }
   }
 
@@ -77,7 +91,7 @@ class FaceItems {
   void claim(const std::string& where, const std::string& subject, const Item& item) {
     if (!claimed_.insert(subject).second)
       fail(where, item.key + " contradicts or repeats an earlier item of this face: give one " +
-                      (subject == "boundary" ? "of pressure, flux and sealed" : subject));
+                      (subject == "boundary" ? "of " + boundary_items() : subject));
   }
 
   FaceCondition& face_;
@@ -86,13 +100,13 @@ class FaceItems {
 
 Face face_of(const std::string& where, const std::string& name) {
   try {
-    return face_named(name);
+    return named<Face>(name);
   } catch (const InputError& error) {
     fail(where, error.what());
   }
 }
 
-Boundary required_boundary(const std::string& where, const std::string& item, const char* items) {
+Boundary required_boundary(const std::string& where, const std::string& item, const std::string& items) {
   const auto boundary = boundary_of(where, item_of(item));
   if (!boundary) fail(where, "unknown item " + quoted(item) + ": use " + items);
   return *boundary;
@@ -108,7 +122,7 @@ Patch patch_of(const std::string& argument) {
   patch.face = face_of(where, fields[0]);
   for (std::size_t k = 0; k < rectangle.size(); ++k)
     patch.rectangle[k] = number(where, rectangle[k]);
-  patch.boundary = required_boundary(where, fields[2], "pressure=P, flux=Q or sealed");
+  patch.boundary = required_boundary(where, fields[2], boundary_items());
   return patch;
 }
 
@@ -129,7 +143,7 @@ Region region_of(const std::string& argument) {
   const auto n = numbers_of(where, fields, 6, "X0,X1,Y0,Y1,Z0,Z1:ITEM");
   return {{n[0], n[2], n[4]},
           {n[1], n[3], n[5]},
-          required_boundary(where, fields[1], "pressure=P or flux=Q")};
+          required_boundary(where, fields[1], boundary_items(false))};
 }
 
 Region point_of(const std::string& argument) {
@@ -137,7 +151,7 @@ Region point_of(const std::string& argument) {
   const std::vector<std::string> fields = parts(argument, ':');
   const auto n = numbers_of(where, fields, 3, "X,Y,Z:ITEM");
   const Eigen::Vector3d place(n[0], n[1], n[2]);
-  return {place, place, required_boundary(where, fields[1], "pressure=P or flux=Q")};
+  return {place, place, required_boundary(where, fields[1], boundary_items(false))};
 }
 
 }  // namespace
@@ -149,9 +163,7 @@ double number(const std::string& option, const std::string& text) {
 }
 
 Wall wall_named(const std::string& option, const std::string& name) {
-  if (name == "no_slip") return Wall::no_slip;
-  if (name == "symmetry") return Wall::symmetry;
-  fail(option, "unknown wall " + quoted(name) + ": use no_slip or symmetry");
+  return Words({name}, option).choice<Wall>();
 }
 
 void apply_faces(const std::vector<std::string>& arguments, Wall wall, Box& box) {
@@ -164,7 +176,7 @@ void apply_faces(const std::vector<std::string>& arguments, Wall wall, Box& box)
     const std::string where = "--face " + quoted(argument);
     const std::size_t colon = argument.find(':');
     if (colon == std::string::npos)
-      fail(where, std::string("no items: write NAME:ITEM[,ITEM]... with items ") + face_items);
+      fail(where, std::string("no items: write NAME:ITEM[,ITEM]... with items ") + face_items());
     const Face face = face_of(where, argument.substr(0, colon));
     for (const std::string& item : parts(argument.substr(colon + 1), ','))
       faces[static_cast<std::size_t>(face)].take(where, item_of(item));

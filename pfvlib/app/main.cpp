@@ -3,6 +3,7 @@
 #include "pfv/error.hpp"
 #include "pfv/version.hpp"
 #include "selftest_command.hpp"
+#include "settings_command.hpp"
 #include "solve_arguments.hpp"
 #include "solve_command.hpp"
 #include "time_step_command.hpp"
@@ -60,6 +61,9 @@ int run(int argc, char** argv) {
       "Example: grains of quartz under a lid of 0.2 kg\n"
       "  pfv time-step --packing grains.csv --box 0 1 0 1 0 1 --face zlo:pressure=0\n"
       "                --grain-density 2600 --piston zhi:0.2 --contact-stiffness 1e4");
+  CLI::App* settings = app.add_subcommand("settings", "the table of all settings, as a page of the documentation");
+  settings->set_version_flag("--version", version_line);
+  const CLI::Option* of_fix = settings->add_flag("--fix", "the keywords of fix pfv instead, as its page has them");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // help or version
@@ -72,6 +76,10 @@ int run(int argc, char** argv) {
   if (selftest->parsed()) return pfv::app::selftest(std::cout) ? succeeded : failed;
   if (bench->parsed()) {
     pfv::app::bench(bench_arguments, std::cout);
+    return succeeded;
+  }
+  if (settings->parsed()) {
+    of_fix->count() > 0 ? pfv::app::write_fix_syntax(std::cout) : pfv::app::write_settings(std::cout);
     return succeeded;
   }
   if (time_step->parsed()) {

@@ -3,13 +3,15 @@
 
 #include "face_arguments.hpp"
 #include "io/atomic_file.hpp"
-#include "io/number_text.hpp"
-#include "io/text_lines.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 
 namespace pfv::app {
 namespace {
@@ -21,6 +23,12 @@ CLI::Option* repeatable(CLI::Option* option) {
 }
 
 }  // namespace
+
+std::string option_of(const Setting& setting) {
+  std::string option = setting.name;
+  std::replace(option.begin(), option.end(), '_', '-');
+  return "--" + option;
+}
 
 double positive(const std::string& option, const std::string& text) {
   const double value = number(option, text);
@@ -78,12 +86,6 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
 
 namespace {
 
-double not_negative(const std::string& option, const std::string& text) {
-  const double value = number(option, text);
-  if (value < 0) throw InputError(option + ": " + text + " is < 0: give 0 or a positive number");
-  return value;
-}
-
 /// "x", "x,y", "z,x,y": the axes along which the packing repeats.
 void apply_periodic(const SolveArguments& arguments, Box& box) {
   for (const std::string& axis : arguments.periodic) {
@@ -112,70 +114,22 @@ Box box_of(const SolveArguments& arguments) {
   return box;
 }
 
-Fluid fluid_of(const SolveArguments& arguments) {
-  Fluid fluid;
-  fluid.viscosity = positive("--viscosity", arguments.viscosity);
-  fluid.density = not_negative("--density", arguments.density);
-  for (std::size_t axis = 0; axis < arguments.gravity.size(); ++axis)
-    fluid.gravity[static_cast<int>(axis)] = number("--gravity", arguments.gravity[axis]);
-  if (arguments.bulk_modulus) {
-    fluid.bulk_modulus = positive("--bulk-modulus", *arguments.bulk_modulus);
-    if (!arguments.time_step)
-      throw InputError("--bulk-modulus: a compressible fluid needs a time step: give --time-step");
+/// Only what an output shows is computed: the report holds the sum of the forces.
+Settings settings_of(const SolveArguments& arguments) {
+  Settings settings;
+  for (const Setting& setting : all_settings()) {
+    const auto given = arguments.settings.find(setting.name);
+    if (given == arguments.settings.end() || given->second.empty()) continue;
+    Words words(given->second, option_of(setting));
+    read(setting, words, settings);
   }
-  check(fluid);
-  return fluid;
-}
-
-int threads_of(const SolveArguments& arguments) {
-  const auto threads = detail::integer(arguments.threads);
-  if (!threads || *threads < 1 || *threads > 64)
-    throw InputError("--threads: " + detail::quoted(arguments.threads) +
-                     " is no number of threads: give 1 to 64");
-  return static_cast<int>(*threads);
-}
-
-Options options_of(const SolveArguments& arguments) {
-  Options options;
-  options.partition = partition_named(arguments.partition);
-  if (arguments.conductance)
-    options.conductance = conductance_law_named(*arguments.conductance);
-  else if (options.partition == Partition::yade)
-    options.conductance = ConductanceLaw::hydraulic_radius;  // YADE's
-  if (arguments.volume_rates)
-    options.volume_rates = volume_rates_named(*arguments.volume_rates);
-  else if (options.partition == Partition::yade)
-    options.volume_rates = VolumeRates::geometric;  // YADE's
-  options.torques = arguments.torques;
-  options.solver = solver_named(arguments.solver);
-  options.ordering = ordering_named(arguments.ordering);
-  options.precision = precision_named(arguments.precision);
-  if (arguments.tolerance) options.tolerance = number("--tolerance", *arguments.tolerance);
-  options.threads = threads_of(arguments);
-  // Only what an output shows is computed: the report holds the sum of the forces.
-  options.forces = arguments.forces || arguments.report;
-  options.split_forces = arguments.forces.has_value();
-  check(options);
-  return options;
-}
-
-/// The grid of --model darcy_grid, or nothing for the pore network.
-std::optional<DarcyOptions> grid_of(const SolveArguments& arguments) {
-  if (arguments.model == "pfv") {
-    if (!arguments.cells.empty() || !arguments.drag.empty())
-      throw InputError("--cells and --drag belong to --model darcy_grid: give that too");
-    return {};
-  }
-  if (arguments.model != "darcy_grid")
-    throw InputError("--model: unknown model " + detail::quoted(arguments.model) +
-                     ": use pfv or darcy_grid");
-  if (arguments.cells.empty())
-    throw InputError("--model darcy_grid needs the numbers of cells: give --cells NX NY NZ");
-  DarcyOptions grid;
-  for (std::size_t axis = 0; axis < grid.cells.size(); ++axis)
-    grid.cells[axis] = whole_number("--cells", arguments.cells[axis]);
-  if (!arguments.drag.empty()) grid.drag = drag_law_named(arguments.drag);
-  return grid;
+  settings.options.forces = arguments.forces || arguments.report;
+  settings.options.split_forces = arguments.forces.has_value();
+  if (settings.fluid.bulk_modulus && !arguments.time_step)
+    throw InputError("--bulk-modulus: a compressible fluid needs a time step: give --time-step");
+  settle(settings);
+  check(settings);
+  return settings;
 }
 
 int repeats_of(const SolveArguments& arguments) {
@@ -207,73 +161,9 @@ void check_outputs(const SolveRequest& request) {
   }
 }
 
-void add_fluid_options(CLI::App& command, SolveArguments& arguments) {
-  const std::string group = "Fluid";
-  command.add_option("--viscosity", arguments.viscosity, "dynamic viscosity, Pa s (default 1e-3)")
-      ->option_text("MU")->group(group);
-  command.add_option("--density", arguments.density,
-                     "density, kg/m3, used with gravity only (default 1000)")
-      ->option_text("RHO")->group(group);
-  command.add_option("--gravity", arguments.gravity,
-                     "gravity, m/s2; adds buoyancy to the forces (default 0 0 0)")
-      ->type_size(3)->expected(1)->option_text("GX GY GZ")->group(group);
-  command.add_option("--bulk-modulus", arguments.bulk_modulus,
-                     "bulk modulus, Pa; needs --time-step (default: incompressible)")
-      ->option_text("KF")->group(group);
-  command.add_option("--time-step", arguments.time_step,
-                     "time step of a compressible fluid, s (default: none)")
-      ->option_text("DT")->group(group);
-}
-
-void add_method_options(CLI::App& command, SolveArguments& arguments) {
-  const std::string group = "Method";
-  const Options defaults;
-  command.add_option("--model", arguments.model,
-                     "pores between the grains, or Darcy flow on a coarse grid (default pfv)")
-      ->option_text("pfv|darcy_grid")->group(group);
-  command.add_option("--cells", arguments.cells, "cells of darcy_grid along x, y and z")
-      ->type_size(3)->expected(1)->option_text("NX NY NZ")->group(group);
-  command.add_option("--drag", arguments.drag,
-                     std::string("drag on a grain of darcy_grid (default ") +
-                         name_of(DarcyOptions{}.drag) + ")")
-      ->option_text("di_felice|kozeny_carman")->group(group);
-  command.add_option("--conductance", arguments.conductance,
-                     "conductance law of a throat (default " +
-                         std::string(name_of(defaults.conductance)) +
-                         "; with\n--partition yade hydraulic_radius)")
-      ->option_text("open_throat|hydraulic_radius|effective_radius")->group(group);
-  command.add_option("--partition", arguments.partition,
-                     "geometry of a throat: signed volumes, or YADE's rules to reproduce its\n"
-                     "results (default " + arguments.partition + ")")
-      ->option_text("signed|yade")->group(group);
-  command.add_option("--volume-rates", arguments.volume_rates,
-                     "how moving grains change the pores' volumes: by the transpose of the forces,\n"
-                     "or by the papers' geometry (default reciprocal; with --partition yade geometric)")
-      ->option_text("reciprocal|geometric")->group(group);
-  command.add_flag("--torques", arguments.torques,
-                   "forces act where they lie, and spins (omegax, omegay, omegaz) move fluid")
-      ->group(group);
-  command.add_option("--solver", arguments.solver,
-                     "linear solver (default " + arguments.solver + ": supernodal)")
-      ->option_text("auto|supernodal|cholmod|tacho|klu2|mumps|cg|gauss_seidel")->group(group);
-  command.add_option("--ordering", arguments.ordering,
-                     "fill-reducing ordering (default " + arguments.ordering +
-                     ": geometric;\nfor tacho: metis); of supernodal, cholmod and tacho")
-      ->option_text("auto|geometric|metis|amd")->group(group);
-  command.add_option("--tolerance", arguments.tolerance,
-                     "residual over right-hand side where cg and gauss_seidel end (default 1e-10)")
-      ->option_text("T")->group(group);
-  command.add_option("--precision", arguments.precision,
-                     "how supernodal keeps its factor: mixed has half as much to read a step and\n"
-                     "solves to a residual of 1e-9 (default " + arguments.precision + ")")
-      ->option_text("double|mixed")->group(group);
-  command.add_option("--threads", arguments.threads,
-                     "threads that share a rebuild or step, 1 to 64; they change no result (default " +
-                     arguments.threads + ")")
-      ->option_text("N")->group(group);
-  command.add_option("--repeat", arguments.repeat,
-                     "further steps on the kept network, for timing, >= 1 (default: 0)")
-      ->option_text("K")->group(group);
+void add_time_step_option(CLI::App& command, SolveArguments& arguments) {
+  command.add_option("--time-step", arguments.time_step, "time step of a compressible fluid, s (default: none)")
+      ->option_text("DT")->group("Fluid");
 }
 
 void add_output_options(CLI::App& command, SolveArguments& arguments) {
@@ -298,12 +188,51 @@ void add_output_options(CLI::App& command, SolveArguments& arguments) {
       ->option_text("FILE.vtu")->group(group);
 }
 
+/// Lines of the parser's help, whose column is narrow.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t width = 75;
+  std::string lines;
+  std::size_t column = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word; column += word.size() + 1) {
+    if (column > 0) lines += column + word.size() > width ? '\n' : ' ';
+    if (column + word.size() > width) column = 0;
+    lines += word;
+  }
+  return lines;
+}
+
+std::string help_of(const Setting& setting) {
+  const std::string unit = setting.unit;
+  return wrapped(setting.help + (unit.empty() ? "" : ", " + unit) + " (default " +
+                 setting.text(Settings{}) + ")");
+}
+
 }  // namespace
+
+void add_settings(CLI::App& command, SolveArguments& arguments, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const Setting& setting = *setting_named(name);
+    std::vector<std::string>& words = arguments.settings[name];
+    if (setting.words == 0)
+      command.add_flag_callback(option_of(setting), [&words] { words = {"yes"}; }, help_of(setting))
+          ->group(setting.group);
+    else
+      command.add_option(option_of(setting), words, help_of(setting))
+          ->type_size(setting.words)->expected(1)->option_text(setting.values)->group(setting.group);
+  }
+}
 
 void add_solve_options(CLI::App& command, SolveArguments& arguments) {
   add_flow_options(command, arguments);
-  add_fluid_options(command, arguments);
-  add_method_options(command, arguments);
+  std::vector<std::string> names;
+  for (const Setting& setting : all_settings())
+    if (setting.hosts.command) names.push_back(setting.name);
+  add_settings(command, arguments, names);
+  add_time_step_option(command, arguments);
+  command.add_option("--repeat", arguments.repeat,
+                     "further steps on the kept network, for timing, >= 1 (default: 0)")
+      ->option_text("K")->group("Solver");
   add_output_options(command, arguments);
   for (CLI::Option* option : command.get_options())
     if (!option->get_option_text().empty()) option->type_name("VALUE");  // in parser's messages
@@ -313,10 +242,7 @@ SolveRequest request_of(const SolveArguments& arguments) {
   SolveRequest request;
   request.packing = arguments.packing;
   request.box = box_of(arguments);
-  request.fluid = fluid_of(arguments);
-  request.options = options_of(arguments);
-  request.grid = grid_of(arguments);
-  if (request.grid) check(*request.grid, request.fluid, request.options);
+  request.settings = settings_of(arguments);
   if (arguments.time_step) request.time_step = positive("--time-step", *arguments.time_step);
   request.repeat = repeats_of(arguments);
   request.forces = arguments.forces;

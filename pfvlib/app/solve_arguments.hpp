@@ -2,11 +2,10 @@
 #pragma once
 
 #include "pfv/box.hpp"
-#include "pfv/darcy_grid.hpp"
-#include "pfv/fluid.hpp"
-#include "pfv/options.hpp"
+#include "pfv/settings.hpp"
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,14 +16,10 @@ namespace pfv::app {
 /// would take "1abc" and "nan".
 struct SolveArguments {
   std::string packing;
-  std::vector<std::string> box, faces, patches, regions, points, gravity, periodic, gradient;
-  std::string model = "pfv", drag;
-  std::vector<std::string> cells;
-  std::string wall = "no_slip", viscosity = "1e-3", density = "1000", threads = "1";
-  std::string partition = name_of(Options{}.partition), solver = name_of(Options{}.solver),
-              ordering = name_of(Options{}.ordering), precision = name_of(Options{}.precision);
-  bool torques = false;
-  std::optional<std::string> conductance, volume_rates, tolerance, bulk_modulus, time_step, repeat;
+  std::vector<std::string> box, faces, patches, regions, points, periodic, gradient;
+  std::string wall = name_of(Wall::no_slip);
+  std::map<std::string, std::vector<std::string>> settings;  ///< by the names of the table
+  std::optional<std::string> time_step, repeat;
   std::optional<std::string> forces, report, vtk, culprits;
 };
 
@@ -32,20 +27,21 @@ struct SolveArguments {
 struct SolveRequest {
   std::string packing;
   Box box;
-  Fluid fluid;
-  Options options;
-  std::optional<DarcyOptions> grid;  ///< absent: the pore network
+  Settings settings;
   double time_step = 0.0;  ///< s; 0: none
   int repeat = 0;          ///< further steps on the kept network
   std::optional<std::string> forces, report, vtk, culprits;  ///< output files
 };
 
 /// The whole of `text` as a number > 0, or as a whole number >= 1; throw InputError that names `option`.
+std::string option_of(const Setting& setting);  ///< "--volume-rates"
 double positive(const std::string& option, const std::string& text);
 int whole_number(const std::string& option, const std::string& text);
 
 /// Packing, box and what lies around: for every command that solves a flow.
 void add_flow_options(CLI::App& command, SolveArguments& arguments);
+/// The settings of the table that are named, as options of their names.
+void add_settings(CLI::App& command, SolveArguments& arguments, const std::vector<std::string>& names);
 void add_solve_options(CLI::App& command, SolveArguments& arguments);
 
 /// Throws InputError for whatever can be refused before the packing is read, output folders that

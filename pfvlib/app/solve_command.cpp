@@ -41,10 +41,9 @@ StepTimes repeat_steps(FlowModel& flow, const Packing& packing, const SolveReque
 
 /// Nothing drives the flow and nothing fixes the level of the pressure.
 bool is_unloaded(const SolveRequest& request, const Packing& packing) {
-  if (request.fluid.bulk_modulus || !at_rest(packing, request.box)) return false;
+  if (request.settings.fluid.bulk_modulus || !at_rest(packing, request.box)) return false;
   const auto idle = [](const Boundary& boundary) {
-    return boundary.kind == Boundary::Kind::sealed ||
-           (boundary.kind == Boundary::Kind::flux && boundary.value == 0);
+    return !boundary.imposes_pressure() && !boundary.drives_flux();
   };
   return std::all_of(request.box.faces.begin(), request.box.faces.end(),
                      [&](const FaceCondition& face) { return idle(face.boundary); }) &&
@@ -103,7 +102,7 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
   for (const auto& output : {request.forces, request.report, request.vtk})
     if (output && detail::is_standard_output(*output)) return;
   out << std::setprecision(6) << report.spheres << " spheres, " << report.pores
-      << (request.grid ? " cells, " : " pores, ")
+      << (request.settings.grid() ? " cells, " : " pores, ")
       << report.unknowns << " unknowns, " << report.seconds.total << " s\n";
   write_permeability(report, out);
   out << "inflow " << report.inflow << " m3/s, outflow " << report.outflow << " m3/s\n";
@@ -122,7 +121,7 @@ void solve(const SolveRequest& request, std::ostream& out, std::ostream& warning
 
   const Packing packing = arrays.view();
   const std::unique_ptr<FlowModel> model =
-      make_flow(request.box, request.fluid, request.options, request.grid);
+      make_flow(request.box, request.settings.fluid, request.settings.options, request.settings.grid());
   FlowModel& flow = *model;
   try {
     flow.evaluate(packing, request.time_step);

@@ -4,8 +4,8 @@
 #include "face_arguments.hpp"
 #include "geometry/pi.hpp"
 #include "io/atomic_file.hpp"
-#include "io/number_text.hpp"
-#include "io/text_lines.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
@@ -52,7 +52,7 @@ std::array<Piston, 6> pistons_of(const std::vector<std::string>& arguments) {
     const std::size_t colon = argument.find(':');
     if (colon == std::string::npos)
       throw InputError("--piston: " + detail::quoted(argument) + " is no NAME:MASS, e.g. zhi:0.5");
-    Piston& piston = pistons[static_cast<std::size_t>(face_named(argument.substr(0, colon)))];
+    Piston& piston = pistons[static_cast<std::size_t>(named<Face>(argument.substr(0, colon)))];
     if (std::isfinite(piston.mass))
       throw InputError("--piston: face " + argument.substr(0, colon) + " occurs twice");
     piston.mass = positive("--piston", argument.substr(colon + 1));
@@ -170,13 +170,8 @@ void print(const Limits& limits, std::ostream& out) {
 
 void add_time_step_options(CLI::App& command, TimeStepArguments& arguments) {
   add_flow_options(command, arguments.problem);
-  std::string group = "Fluid and grains";
-  command.add_option("--viscosity", arguments.problem.viscosity,
-                     "dynamic viscosity, Pa s (default 1e-3)")->option_text("MU")->group(group);
-  command.add_option("--conductance", arguments.problem.conductance,
-                     "conductance law of a throat (default " +
-                         std::string(name_of(Options{}.conductance)) + ")")
-      ->option_text("open_throat|hydraulic_radius|effective_radius")->group(group);
+  add_settings(command, arguments.problem, {"viscosity", "conductance"});
+  std::string group = "Grains";
   command.add_option("--grain-density", arguments.grain_density, "density of the grains, kg/m3")
       ->required()->option_text("RHO (required)")->group(group);
   command.add_option("--piston", arguments.pistons,
@@ -213,7 +208,7 @@ void time_step(const TimeStepArguments& arguments, std::ostream& out) {
   const Eigen::VectorXd masses = masses_of(packing, arguments.grain_density);
   const std::vector<int> columns = chosen(arguments, packing);
 
-  Flow flow(request.box, request.fluid, request.options);
+  Flow flow(request.box, request.settings.fluid, request.settings.options);
   flow.evaluate(packing);
   const std::vector<Eigen::Matrix3d> matrices = flow.viscosity_matrices(columns);
   Limits limits;
@@ -223,11 +218,11 @@ void time_step(const TimeStepArguments& arguments, std::ostream& out) {
   for (std::size_t i = 0; i < columns.size(); ++i)
     limits.viscous.take(viscous_time_step(masses[columns[i]], matrices[i]), packing.ids[columns[i]]);
   for (Eigen::Index k = 0; k < packing.size(); ++k)
-    limits.formula.take(estimated_time_step(masses[k], packing.radii[k], request.fluid.viscosity),
+    limits.formula.take(estimated_time_step(masses[k], packing.radii[k], request.settings.fluid.viscosity),
                         packing.ids[k]);
   add_contacts(arguments, packing, request.box, masses, limits);
   if (arguments.matrices)
-    write_matrices(*arguments.matrices, packing, columns, matrices, request.fluid.viscosity);
+    write_matrices(*arguments.matrices, packing, columns, matrices, request.settings.fluid.viscosity);
   if (arguments.report) write_report_of(*arguments.report, limits);
   // An output on the same stream must stay what its format says.
   for (const auto& output : {arguments.report, arguments.matrices})

@@ -28,7 +28,7 @@ Eigen::Vector3d force_on_solid(const pfv::Report& report, const pfv::Box& box) {
   for (const pfv::Face face : pfv::all_faces) {
     const pfv::FaceResult& result = report.faces[static_cast<int>(face)];
     sum += result.force_viscous;
-    if (box[face].boundary.kind == pfv::Boundary::Kind::sealed) sum += result.force_pressure;
+    if (!box[face].boundary.is_open()) sum += result.force_pressure;
   }
   return sum;
 }

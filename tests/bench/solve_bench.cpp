@@ -8,7 +8,7 @@
 #include "pfv/pfv.hpp"
 #include "solve/fill_reducing_ordering.hpp"
 #include "solve/linear_solver.hpp"
-#include "solve/solver_abilities.hpp"
+#include "problem/solver_abilities.hpp"
 #include "sparse/cholesky.hpp"
 #include "pfv/dense_packing.hpp"
 #include "support/stages.hpp"

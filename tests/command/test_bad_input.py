@@ -127,7 +127,7 @@ class BadInput(CommandTest):
             self.refuse_arguments("--tolerance", tolerance, "--solver", "cg", *THROUGH_FLOW,
                                   parts=["tolerance"])
         self.refuse_arguments("--tolerance", "1e-6", *THROUGH_FLOW,
-                              parts=["supernodal", "direct", "cg"])
+                              parts=["supernodal", "no tolerance", "cg"])
         for threads in ("0", "65", "-1", "two", "1.5"):
             self.refuse_arguments("--threads", threads, *THROUGH_FLOW,
                                   parts=["--threads", threads, "1 to 64"])

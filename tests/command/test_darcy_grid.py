@@ -51,7 +51,7 @@ class DarcyGrid(CommandTest):
 
     def test_what_it_refuses(self):
         for words, part in ((("--model", "darcy_grid"), "--cells NX NY NZ"),
-                            (("--cells", "1", "1", "1"), "--model darcy_grid"),
+                            (("--cells", "1", "1", "1"), "use the model darcy_grid"),
                             (("--model", "grid"), "unknown model"),
                             (("--model", "darcy_grid", "--cells", "1", "x", "1"), "whole number"),
                             ((*GRID, "--drag", "stokes"), "unknown drag law"),

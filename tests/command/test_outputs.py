@@ -9,8 +9,8 @@ from command import DENSE, THROUGH_FLOW, CommandTest, dense_rows, with_velocitie
 INTEGERS = "spheres hidden outside pores unknowns threads peak_memory_bytes".split()
 NUMBERS = ("porosity pore_volume solid_area inflow outflow volume_rate_sum storage_rate mass_error "
            "fluid_volume fluid_came_in fluid_balance_error force_balance_error residual").split()
-COUNTS = ("triangulate order factor solve force_matrix volume_rate degenerate_throats merged_pores "
-          "pinned_pores").split()
+COUNTS = ("triangulate order factor solve correction_solve limit_solve query_solve background force_matrix "
+          "volume_rate degenerate_throats merged_pores pinned_pores").split()
 SECONDS = "read triangulate throats assemble order factor solve forces total".split()
 FACES = "xlo xhi ylo yhi zlo zhi".split()
 SINKING = ["--face", "zhi:pressure=0,velocity=-1", "--viscosity", "1"]
@@ -59,7 +59,7 @@ class Outputs(CommandTest):
         for key in SECONDS:
             self.assert_number(report["seconds"][key])
         self.assertIsNone(report["seconds"]["step"])
-        self.assertEqual(list(report["wall_seconds"]), ["total", "step"])
+        self.assertEqual(list(report["wall_seconds"]), ["total", "waited", "step"])
         self.assertIsNone(report["wall_seconds"]["step"])
 
     def test_report_of_a_through_flow_balances(self):

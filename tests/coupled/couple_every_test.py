@@ -51,6 +51,16 @@ class CoupleEvery(SettledTest):
         self.assertLess(abs(rows[150]["flow[7]"]), 30.0)
         self.assertGreater(rows[151]["flow[7]"], 30.0)
 
+    def test_fix_modify_to_each_nth_step_ends_it(self):
+        flow = self.fix(0.05 * SettledTest.limit / STEP, AUTO)
+        self.liggghts(self.script(flow, "") +
+                      "thermo_style custom step f_flow[10]\nthermo_modify norm no\nthermo 1\nrun 5\n"
+                      "fix_modify flow couple_every 4\nrun 0\nrun 12\n")
+        rows = read_thermo((self.folder / "log.liggghts").read_text())
+        since = [row["flow[10]"] for row in rows[-12:]]
+        self.assertEqual(sum(steps == 0 for steps in since), 3)
+        self.assertEqual(max(since), 3)
+
     def test_refuses_an_error_that_is_none(self):
         for words in ("couple_every auto error 0", "couple_every auto error 200"):
             self.refused(self.script(self.fix(1.0, words), "run 0\n"), "couple_every", "error")

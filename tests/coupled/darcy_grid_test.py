@@ -67,11 +67,14 @@ class DarcyGrid(CoupledTest):
         fix = "fix flow all pfv " + FLOW + " "
         for words, parts in (("model darcy_grid 2 2", ["'model'", "missing"]),
                              ("model darcy_grid 2 0 2", ["'model'", "whole number"]),
-                             ("model lattice", ["'model'", "pfv and darcy_grid"]),
+                             ("model lattice", ["'model'", "pfv, darcy_grid"]),
                              ("model darcy_grid 1 1 1 drag stokes", ["drag law", "di_felice"]),
                              ("model darcy_grid 1 1 1 coupling staged", ["no staged coupling"]),
                              ("model darcy_grid 1 1 1 retriangulate 0.02", ["no retriang"]),
-                             ("model darcy_grid 1 1 1 bulk_modulus 1e9", ["no bulk modulus"])):
+                             ("model darcy_grid 1 1 1 bulk_modulus 1e9", ["no bulk modulus"]),
+                             ("model darcy_grid 1 1 1 shear_viscous yes", ["no shear viscous"]),
+                             ("model darcy_grid 1 1 1 conductance open_throat", ["no conductance law"]),
+                             ("model darcy_grid", ["cells", "NX NY NZ"])):
             with self.subTest(words=words):
                 self.refused(HEAD + fix + words + "\n", *parts)
         self.refused(f"{HEAD}{GRID}\nfix_modify flow retriangulate 0.02\n", "no retriang")

@@ -79,6 +79,20 @@ class Refusals(CoupledTest):
         self.refuse(FLOW + " rebuild_lag 5 model darcy_grid 1 1 1", "no rebuild lag", after="")
         self.refuse(WATER + " couple_every 0", "couple_every", "'0'", after="")
 
+    def test_what_is_not_read_is_refused_at_its_default_too(self):
+        self.refuse(FLOW + " tolerance 1e-10", "no tolerance", "cg", after="")
+        self.refuse(FLOW + " solver cg precision double", "no choice of precision", "cholmod", after="")
+        self.refuse(WATER + " couple_every auto coupling staged", "couple_every auto", "each step", after="")
+        self.refuse(WATER + " couple_every auto rebuild_lag 5", "couple_every auto", "rebuild_lag", after="")
+
+    def test_what_implicit_steps_have_not(self):
+        self.refuse(FLOW + " shear_viscous yes coupling implicit", "shear", "staged", after="")
+        self.refuse(FLOW + " volume_rates geometric coupling implicit", "volume_rates", "explicit", after="")
+
+    def test_ordering(self):
+        self.refuse(FLOW + " ordering random", "ordering", "'random'", "geometric, metis, amd", after="")
+        self.refuse(FLOW + " solver klu2 ordering metis", "klu2", "metis", after="")
+
     def test_output_without_its_folder(self):
         self.refuse(FLOW + " output 10 nowhere/flow.pvd", "nowhere", after="")
         self.refuse(FLOW + " profile z 5 10 nowhere/p.csv", "nowhere", after="")
@@ -92,6 +106,7 @@ class Refusals(CoupledTest):
     def test_fix_modify_to_bad_values(self):
         self.refuse(FLOW, "viscosity", after="fix_modify flow viscosity 0\n")
         self.refuse(FLOW, "'x'", after="fix_modify flow pressure zlo x\n")
+        self.refuse(FLOW, "number of steps", after="fix_modify flow couple_every auto\n")
 
     # variables
 

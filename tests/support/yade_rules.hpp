@@ -81,7 +81,7 @@ inline YadeThroat yade_throat(const Stages& s, int facet_number, YadeRules rules
       if (rules.symmetry_factor && face.wall == pfv::Wall::symmetry)
         wall_factor /= std::sqrt(2.0);
       if (face.wall != pfv::Wall::no_slip ||
-          face.boundary.kind != pfv::Boundary::Kind::sealed)
+          face.boundary.is_open())
         continue;
       const Eigen::Vector3d normal = pfv::outward_normal(pfv::Face(pfv::wall_number(v)));
       const int other = is_wall(a) ? a : b;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pfv/error.hpp"
 #include "solve/linear_solver.hpp"
-#include "solve/solver_abilities.hpp"
+#include "problem/solver_abilities.hpp"
 #include "support/matrices.hpp"
 
 #include <gtest/gtest.h>

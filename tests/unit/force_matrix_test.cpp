@@ -132,8 +132,7 @@ TEST(Forces, AreSectorsAndSurfaceSharesFacetByFacet) {
       const int row = pfv::is_wall(facet[i]) ? s.spheres.size() + pfv::wall_number(facet[i])
                                              : facet[i];
       const bool rubs = !pfv::is_wall(facet[i]) ||
-                        s.box.faces[pfv::wall_number(facet[i])].boundary.kind ==
-                            pfv::Boundary::Kind::sealed;
+                        !s.box.faces[pfv::wall_number(facet[i])].boundary.is_open();
       if (rubs) expected.col(row) += (disc[i] + fluid * throat.share[i]) * push;
     }
   }

@@ -3,11 +3,17 @@
 #include "pfv/error.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
+#include "pfv/settings.hpp"
 #include "support/boxes.hpp"
 
 #include <functional>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -24,28 +30,35 @@ std::string refusal_of(const std::function<void(Settings&)>& spoil) {
   return refusal([&] { pfv::check(settings); });
 }
 
+template <class Enum>
+void reads_back() {
+  for (const auto& one : pfv::Names<Enum>::all) {
+    EXPECT_EQ(pfv::named<Enum>(one.name), one.value);
+    EXPECT_STREQ(pfv::name_of(one.value), one.name);
+  }
+}
+
 TEST(Names, EachFaceReadsBackAsItself) {
   for (const pfv::Face face : pfv::all_faces)
-    EXPECT_EQ(pfv::face_named(pfv::name_of(face)), face);
+    EXPECT_EQ(pfv::named<pfv::Face>(pfv::name_of(face)), face);
   EXPECT_STREQ(pfv::name_of(pfv::Face::yhi), "yhi");
 }
 
 TEST(Names, EachOptionReadsBackAsItself) {
   using namespace pfv;
-  for (const char* name : {"hydraulic_radius", "effective_radius", "open_throat"})
-    EXPECT_STREQ(name_of(conductance_law_named(name)), name);
-  for (const char* name : {"auto", "supernodal", "cholmod", "tacho", "klu2", "mumps", "cg", "gauss_seidel"})
-    EXPECT_STREQ(name_of(solver_named(name)), name);
-  for (const char* name : {"auto", "metis", "amd"})
-    EXPECT_STREQ(name_of(ordering_named(name)), name);
+  reads_back<ConductanceLaw>();
+  reads_back<Partition>();
+  reads_back<SolverKind>();
+  reads_back<OrderingKind>();
+  reads_back<Coupling>();
 }
 
 TEST(Names, AnUnknownNameIsRefusedWithTheListOfThoseThatExist) {
-  expect_line(refusal([] { pfv::solver_named("pardiso"); }), "auto, supernodal, cholmod, tacho, klu2");
-  expect_line(refusal([] { pfv::ordering_named(""); }), "auto, geometric, metis, amd");
-  expect_line(refusal([] { pfv::conductance_law_named("Hydraulic_radius"); }),
+  expect_line(refusal([] { pfv::named<pfv::SolverKind>("pardiso"); }), "auto, supernodal, cholmod, tacho, klu2");
+  expect_line(refusal([] { pfv::named<pfv::OrderingKind>(""); }), "auto, geometric, metis, amd");
+  expect_line(refusal([] { pfv::named<pfv::ConductanceLaw>("Hydraulic_radius"); }),
                "hydraulic_radius, effective_radius");
-  expect_line(refusal([] { pfv::face_named("xmid"); }), "xlo, xhi, ylo, yhi, zlo, zhi");
+  expect_line(refusal([] { pfv::named<pfv::Face>("xmid"); }), "xlo, xhi, ylo, yhi, zlo, zhi");
 }
 
 TEST(Names, AValueOutsideItsEnumerationIsRefused) {
@@ -135,6 +148,80 @@ TEST(CheckOptions, RefusesWhatContradicts) {
   refusal_of<Options>([](Options& o) { o.conductance = static_cast<pfv::ConductanceLaw>(7); });
   EXPECT_NO_THROW(pfv::check(Options{}));
   EXPECT_EQ(Options{}.conductance, pfv::ConductanceLaw::open_throat);
+}
+
+/// The settings that `words` give, one keyword after the other, as a host reads them.
+pfv::Settings settings_of(std::vector<std::string> all) {
+  pfv::Settings settings;
+  pfv::Words words(std::move(all));
+  while (!words.done()) pfv::read(*pfv::setting_named(words.keyword()), words, settings);
+  pfv::settle(settings);
+  pfv::check(settings);
+  return settings;
+}
+
+TEST(SettingsTable, EachDefaultIsInRangeAndReadsBackAsItself) {
+  const pfv::Settings defaults;
+  for (const pfv::Setting& setting : pfv::all_settings()) {
+    SCOPED_TRACE(setting.name);
+    EXPECT_NO_THROW(setting.check(defaults));
+    if (setting.text(defaults) == "none") continue;
+    std::istringstream text(setting.text(defaults));
+    pfv::Words words(std::vector<std::string>(std::istream_iterator<std::string>(text), {}));
+    pfv::Settings read_back;
+    pfv::read(setting, words, read_back);
+    EXPECT_TRUE(words.done());
+    EXPECT_EQ(setting.text(read_back), setting.text(defaults));
+  }
+}
+
+TEST(SettingsTable, GivesEachValueItsPlace) {
+  const pfv::Settings settings = settings_of({"viscosity", "2", "retriangulate", "mean", "0.1", "couple_every", "5",
+                                              "solver", "cg", "tolerance", "1e-4", "gravity", "0", "0", "-9.81"});
+  EXPECT_EQ(settings.fluid.viscosity, 2.0);
+  EXPECT_EQ(settings.fluid.gravity[2], -9.81);
+  EXPECT_EQ(settings.options.strain_measure, pfv::StrainMeasure::mean);
+  EXPECT_EQ(settings.options.retriangulation_strain, 0.1);
+  EXPECT_EQ(settings.steps.couple_every, 5);
+  EXPECT_FALSE(settings.steps.couple_error);
+  EXPECT_EQ(settings.options.tolerance, 1e-4);
+  EXPECT_FALSE(settings.grid());
+  const pfv::Settings grid = settings_of({"model", "darcy_grid", "1", "2", "3", "every", "7", "drag", "kozeny_carman"});
+  EXPECT_EQ(grid.grid()->cells[2], 3);
+  EXPECT_EQ(grid.grid()->refresh_every, 7);
+  EXPECT_FALSE(grid.steps.couple_error);  // follows from the model
+}
+
+TEST(SettingsTable, RefusesWhatIsNotReadAlsoAtItsDefault) {
+  const auto refused = [](std::vector<std::string> words, const char* part) {
+    expect_line(refusal([&] { settings_of(words); }), part);
+  };
+  refused({"tolerance", "1e-10"}, "takes no tolerance: leave `tolerance 1e-10` away, or use the solver cg or gauss_seidel");
+  refused({"shear_viscous", "yes", "model", "darcy_grid", "1", "1", "1"}, "darcy_grid takes no shear viscous forces");
+  refused({"torques", "no", "model", "darcy_grid", "1", "1", "1"}, "darcy_grid takes no torques");
+  refused({"drag", "di_felice"}, "pfv takes no drag: leave `drag di_felice` away, or use the model darcy_grid");
+  refused({"couple_every", "auto", "coupling", "staged"}, "`couple_every auto` goes with `coupling explicit`");
+}
+
+TEST(SettingsTable, NamesTheKeywordOfABadWord) {
+  const auto refused = [](std::vector<std::string> words, const char* part) {
+    expect_line(refusal([&] { settings_of(words); }), part);
+  };
+  refused({"viscosity", "thick"}, "keyword 'viscosity': the viscosity is 'thick': give a finite number > 0");
+  refused({"viscosity"}, "keyword 'viscosity': the viscosity is missing");
+  refused({"threads", "65"}, "keyword 'threads': the number of threads is '65': give 1 to 64");
+  refused({"solver", "magic"}, "keyword 'solver': unknown solver 'magic': use one of auto");
+  refused({"density", "1", "density", "2"}, "keyword 'density': density is given twice");
+}
+
+TEST(CheckOptions, OfAStepRefusesWhatItDoesNotHave) {
+  pfv::Options lagging;
+  lagging.rebuild_lag = 3;
+  expect_line(refusal([&] { pfv::check(lagging, pfv::Coupling::implicit); }), "masses of the grains");
+  EXPECT_NO_THROW(pfv::check(lagging, pfv::Coupling::staged));
+  pfv::Options sheared;
+  sheared.shear_viscous = true;
+  expect_line(refusal([&] { pfv::check(sheared, pfv::Coupling::implicit); }), "no implicit step");
 }
 
 }  // namespace

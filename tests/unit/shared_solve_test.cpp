@@ -129,8 +129,8 @@ TEST(CheckOptions, RefusesThreadsAndPrecisionsThatMakeNoSense) {
   options.precision = Precision::mixed;
   options.solver = SolverKind::klu2;
   EXPECT_THROW(check(options), InputError);
-  EXPECT_EQ(precision_named(name_of(Precision::mixed)), Precision::mixed);
-  EXPECT_EQ(precision_named(name_of(Precision::full)), Precision::full);
+  EXPECT_EQ(named<Precision>(name_of(Precision::mixed)), Precision::mixed);
+  EXPECT_EQ(named<Precision>(name_of(Precision::full)), Precision::full);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which solver and ordering a choice stands for.
 #include "solve/linear_solver.hpp"
-#include "solve/solver_abilities.hpp"
+#include "problem/solver_abilities.hpp"
 
 #include "pfv/error.hpp"
 #include "support/matrices.hpp"
@@ -58,7 +58,7 @@ std::string refusal(const std::function<void(Options&)>& change) {
   Options options;
   change(options);
   try {
-    check_solver(options);
+    check(options);
   } catch (const InputError& error) {
     return error.what();
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/sphere_stresses.hpp"
 
+#include "pfv/flow.hpp"
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
 #include "support/stages.hpp"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "pfv/names.hpp"
+
 #include <Eigen/Core>
 #include <array>
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace pfv {
@@ -23,14 +24,25 @@ inline Eigen::Vector3d outward_normal(Face face) {
   normal[axis_of(face)] = is_upper(face) ? 1.0 : -1.0;
   return normal;
 }
-/// "xlo" ... "zhi".
-const char* name_of(Face face);
-/// Inverse of `name_of`; throws InputError for any other name.
-Face face_named(const std::string& name);
+template <>
+struct Names<Face> {
+  static constexpr const char* what = "face";
+  static constexpr std::array<Named<Face>, 6> all{{{Face::xlo, "xlo"},
+                                                   {Face::xhi, "xhi"},
+                                                   {Face::ylo, "ylo"},
+                                                   {Face::yhi, "yhi"},
+                                                   {Face::zlo, "zlo"},
+                                                   {Face::zhi, "zhi"}}};
+};
 
 /// How fluid slides along a sealed face. A face that fluid crosses (pressure or flux) is fluid, not
 /// wall: its type is ignored.
 enum class Wall { no_slip, symmetry };
+template <>
+struct Names<Wall> {
+  static constexpr const char* what = "wall";
+  static constexpr std::array<Named<Wall>, 2> all{{{Wall::no_slip, "no_slip"}, {Wall::symmetry, "symmetry"}}};
+};
 
 /// What the fluid meets at a face or patch.
 struct Boundary {
@@ -44,12 +56,31 @@ struct Boundary {
   /// Imposed pressure (Pa) as a function of the pore's place (m) and of the flow time (s).
   std::function<double(const Eigen::Vector3d&, double)> profile;
 
+  /// Pores on it have a pressure that is given.
+  bool imposes_pressure() const { return kind == Kind::pressure; }
+  /// A flow rate that is given enters through it.
+  bool imposes_flux() const { return kind == Kind::flux; }
+  bool drives_flux() const { return imposes_flux() && value != 0.0; }
+  /// Fluid may cross it.
+  bool is_open() const { return kind != Kind::sealed; }
+
   static Boundary sealed() { return {}; }
   static Boundary pressure(double pascal) { return {Kind::pressure, pascal, {}}; }
   static Boundary flux(double cubic_metres_per_second) {
     return {Kind::flux, cubic_metres_per_second, {}};
   }
 };
+
+/// How each kind is written, and the letter and the unit of its value; null for one without.
+struct BoundaryKind {
+  Boundary::Kind kind;
+  const char* name;
+  const char* symbol;
+  const char* unit;
+};
+inline constexpr std::array<BoundaryKind, 3> boundary_kinds{{{Boundary::Kind::sealed, "sealed", nullptr, nullptr},
+                                                             {Boundary::Kind::pressure, "pressure", "P", "Pa"},
+                                                             {Boundary::Kind::flux, "flux", "Q", "m3/s"}}};
 
 /// One of the six plane walls of the box.
 struct FaceCondition {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "pfv/darcy_options.hpp"
 #include "pfv/flow_model.hpp"
 
 #include <memory>
@@ -8,29 +9,6 @@
 #include <string>
 
 namespace pfv {
-
-/// Drag of the fluid on a grain of a coarse cell. `di_felice`: the drag of a single sphere times a
-/// power of the porosity, as in the CFD module that the Darcy example of PFC uses. `kozeny_carman`:
-/// what the flow itself resists, shared among the grains by volume, so that fluid and grains
-/// exchange exactly the same momentum.
-enum class DragLaw { di_felice, kozeny_carman };
-
-const char* name_of(DragLaw law);
-/// Inverse of `name_of`; throws InputError for any other name.
-DragLaw drag_law_named(const std::string& name);
-
-struct DarcyOptions {
-  std::array<int, 3> cells{1, 1, 1};  ///< along x, y, z; > 0. Two grain diameters a cell or more
-  int refresh_every = 1;              ///< steps between two looks at the porosity, > 0
-  DragLaw drag = DragLaw::di_felice;
-  /// The grains carry fluid with them and displace it. false: a steady flow through grains at rest,
-  /// in which they move, as in the example.
-  bool grain_motion = true;
-};
-
-/// Throws InputError for numbers of cells or steps < 1, and for what a grid has no place for: a
-/// bulk modulus, options that shape a pore network.
-void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options);
 
 struct DarcyData;
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <string>
+#include "pfv/names.hpp"
+
+#include <optional>
 
 namespace pfv {
 
@@ -9,48 +11,119 @@ namespace pfv {
 /// spheres where they do not (doc/accuracy.md says why it is the default). `hydraulic_radius`: the
 /// papers', Chareyre et al. 2012 eqs. 7-9 with alpha = 1/2. `effective_radius`: eq. 10.
 enum class ConductanceLaw { hydraulic_radius, effective_radius, open_throat };
+template <>
+struct Names<ConductanceLaw> {
+  static constexpr const char* what = "conductance law";
+  static constexpr std::array<Named<ConductanceLaw>, 3> all{
+      {{ConductanceLaw::hydraulic_radius, "hydraulic_radius"},
+       {ConductanceLaw::effective_radius, "effective_radius"},
+       {ConductanceLaw::open_throat, "open_throat"}}};
+};
 
 /// Direct solvers behind Amesos2: supernodal (`automatic`), CHOLMOD's symbolic factorisation with numeric
 /// one and solves of this library; cholmod, CHOLMOD's own; tacho, Trilinos' sparse Cholesky; klu2, its plain
 /// sparse LU; mumps (unless CMake's PFV_WITH_MUMPS is off). Iterative ones: cg, conjugate gradients with
 /// incomplete Cholesky; gauss_seidel with over-relaxation.
 enum class SolverKind { automatic, supernodal, cholmod, tacho, klu2, mumps, cg, gauss_seidel };
+template <>
+struct Names<SolverKind> {
+  static constexpr const char* what = "solver";
+  static constexpr std::array<Named<SolverKind>, 8> all{
+      {{SolverKind::automatic, "auto"},
+       {SolverKind::supernodal, "supernodal"},
+       {SolverKind::cholmod, "cholmod"},
+       {SolverKind::tacho, "tacho"},
+       {SolverKind::klu2, "klu2"},
+       {SolverKind::mumps, "mumps"},
+       {SolverKind::cg, "cg"},
+       {SolverKind::gauss_seidel, "gauss_seidel"}}};
+};
 
 /// Fill-reducing ordering: nested dissection of the pore centres in space (`automatic`) or of the
 /// graph by METIS (tacho's `automatic`), or minimum degree: of supernodal, cholmod and tacho. The other
 /// solvers order themselves or not at all and refuse a choice (klu2 takes amd, its own).
 enum class OrderingKind { automatic, geometric, metis, amd };
+template <>
+struct Names<OrderingKind> {
+  static constexpr const char* what = "ordering";
+  static constexpr std::array<Named<OrderingKind>, 4> all{
+      {{OrderingKind::automatic, "auto"},
+       {OrderingKind::geometric, "geometric"},
+       {OrderingKind::metis, "metis"},
+       {OrderingKind::amd, "amd"}}};
+};
 
 /// How supernodal keeps its factor. `full`: in double precision. `mixed`: in single precision, half of what a
 /// solve has to read; residuals are taken in double precision and solved for again until they are below
 /// 1e-9 of the right-hand side, from the last solution on, so that a step that changes little costs one solve.
 enum class Precision { full, mixed };
+template <>
+struct Names<Precision> {
+  static constexpr const char* what = "precision";
+  static constexpr std::array<Named<Precision>, 2> all{
+      {{Precision::full, "double"},
+       {Precision::mixed, "mixed"}}};
+};
 
 /// How a throat's domain is parted among pores and spheres. `signed_angles`: signed volumes and solid
 /// angles, whose sums are the pore volume and the solid surface. `yade`: the rules of YADE's FlowEngine,
 /// to reproduce its results, with geometric volume rates; refused with the open-throat law, which counts on
 /// signed volumes, and with reciprocal rates.
 enum class Partition { signed_angles, yade };
+template <>
+struct Names<Partition> {
+  static constexpr const char* what = "partition";
+  static constexpr std::array<Named<Partition>, 2> all{
+      {{Partition::signed_angles, "signed"},
+       {Partition::yade, "yade"}}};
+};
 
 /// How the velocities of grains and faces change the pores' volumes. `reciprocal`: by S^T, the transpose of the
 /// forces, as Stokes flow demands. `geometric`: by the papers' E = dV/dx; explicit steps only. It feeds some
 /// motions of grains of unlike size (doc/method.md).
 enum class VolumeRates { reciprocal, geometric };
+template <>
+struct Names<VolumeRates> {
+  static constexpr const char* what = "volume rates";
+  static constexpr std::array<Named<VolumeRates>, 2> all{
+      {{VolumeRates::reciprocal, "reciprocal"},
+       {VolumeRates::geometric, "geometric"}}};
+};
 
 /// How the pressures of a step are found. `explicit_step`: from the velocities given. `staged`: the drag is
 /// integrated over the step in sub-stages. `implicit`: together with the velocities that follow. `automatic`:
 /// what is cheapest and stable, chosen for each network.
 enum class Coupling { explicit_step, staged, implicit, automatic };
+template <>
+struct Names<Coupling> {
+  static constexpr const char* what = "coupling";
+  static constexpr std::array<Named<Coupling>, 4> all{{{Coupling::explicit_step, "explicit"},
+                                                       {Coupling::staged, "staged"},
+                                                       {Coupling::implicit, "implicit"},
+                                                       {Coupling::automatic, "auto"}}};
+};
 
 /// What to do with a grain whose centre is not inside the flow box.
 enum class OutsideGrains { refuse, leave_out };
+template <>
+struct Names<OutsideGrains> {
+  static constexpr const char* what = "rule for grains outside the box";
+  static constexpr std::array<Named<OutsideGrains>, 2> all{
+      {{OutsideGrains::refuse, "refuse"},
+       {OutsideGrains::leave_out, "leave_out"}}};
+};
 
 /// The strain that leads to a new network. `largest`: the sum over the steps of the largest |dV/dt| dt / V
 /// of all pores (thesis eqs. 5.13-5.14). `mean`: sum of |V - V_0| over sum of V_0, V_0 the pores' volumes
 /// when the network was built: one pore does not count for all, nor does what is undone.
 enum class StrainMeasure { largest, mean };
-
-constexpr double default_tolerance = 1e-10;
+template <>
+struct Names<StrainMeasure> {
+  static constexpr const char* what = "strain measure";
+  static constexpr std::array<Named<StrainMeasure>, 2> all{
+      {{StrainMeasure::largest, "largest"},
+       {StrainMeasure::mean, "mean"}}};
+};
 
 struct Options {
   ConductanceLaw conductance = ConductanceLaw::open_throat;
@@ -66,7 +139,7 @@ struct Options {
   Precision precision = Precision::full;
   /// Where cg and gauss_seidel end: residual over right-hand side (2-norms), in (0, 1). Direct solvers
   /// have none and refuse another than this.
-  double tolerance = default_tolerance;
+  double tolerance = 1e-10;
   /// Threads that share a step, 1 ... 64. They change no byte of any result.
   int threads = 1;
   OutsideGrains outside = OutsideGrains::refuse;
@@ -86,25 +159,18 @@ struct Options {
                                ///< 6.29-6.30); explicit and staged steps, no periodic axes
 };
 
-/// Throws InputError for settings that are unknown or contradict each other.
-void check(const Options& options);
+/// When and how a host that moves the grains asks for forces.
+struct StepSettings {
+  Coupling coupling = Coupling::explicit_step;
+  int couple_every = 1;  ///< steps between two solves of the flow, > 0
+  /// In its place, by default: as the loads change, with this error, as a part of the load. Absent where each
+  /// step or each N-th is solved. Explicit steps on a pore network without rebuild_lag.
+  std::optional<double> couple_error = 1e-3;
+  double safety = 1.0;  ///< part of the explicit limit that a step may reach, > 0
+  bool time_step_check = true;
+};
 
-/// The name that the command line and the fix use, and back (InputError for an unknown one, with the
-/// list of those that exist).
-const char* name_of(ConductanceLaw law);
-const char* name_of(Partition partition);
-const char* name_of(SolverKind solver);
-const char* name_of(OrderingKind ordering);
-const char* name_of(Precision precision);
-const char* name_of(StrainMeasure measure);
-const char* name_of(VolumeRates rates);
-const char* name_of(Coupling coupling);
-ConductanceLaw conductance_law_named(const std::string& name);
-Partition partition_named(const std::string& name);
-SolverKind solver_named(const std::string& name);
-OrderingKind ordering_named(const std::string& name);
-Precision precision_named(const std::string& name);
-VolumeRates volume_rates_named(const std::string& name);
-Coupling coupling_named(const std::string& name);
+/// Throws InputError for options that are unknown or contradict each other, or a step of this kind.
+void check(const Options& options, Coupling step = Coupling::explicit_step);
 
 }  // namespace pfv

@@ -83,4 +83,80 @@ struct Report {
   std::int64_t peak_memory_bytes = 0;
 };
 
+// The entries of a report, for whoever writes them: `see(name, value)` for each in the order of the file. What is
+// not here is not written.
+template <class See>
+void for_each_entry(const Counts& counts, const See& see) {
+  see("triangulate", counts.triangulate);
+  see("order", counts.order);
+  see("factor", counts.factor);
+  see("solve", counts.solve);
+  see("correction_solve", counts.correction_solve);
+  see("limit_solve", counts.limit_solve);
+  see("query_solve", counts.query_solve);
+  see("background", counts.background);
+  see("force_matrix", counts.force_matrix);
+  see("volume_rate", counts.volume_rate);
+  see("degenerate_throats", counts.degenerate_throats);
+  see("merged_pores", counts.merged_pores);
+  see("pinned_pores", counts.pinned_pores);
+}
+template <class See>
+void for_each_entry(const Seconds& seconds, const See& see) {
+  see("read", seconds.read);
+  see("triangulate", seconds.triangulate);
+  see("throats", seconds.throats);
+  see("assemble", seconds.assemble);
+  see("order", seconds.order);
+  see("factor", seconds.factor);
+  see("solve", seconds.solve);
+  see("forces", seconds.forces);
+  see("total", seconds.total);
+  see("step", seconds.step);
+}
+template <class See>
+void for_each_entry(const WallSeconds& seconds, const See& see) {
+  see("total", seconds.total);
+  see("waited", seconds.waited);
+  see("step", seconds.step);
+}
+template <class See>
+void for_each_entry(const Report& report, const See& see) {
+  see("model", report.model);
+  see("spheres", report.spheres);
+  see("hidden", report.hidden);
+  see("outside", report.outside);
+  see("pores", report.pores);
+  see("unknowns", report.unknowns);
+  see("porosity", report.porosity);
+  see("pore_volume", report.pore_volume);
+  see("solid_area", report.solid_area);
+  see("inflow", report.inflow);
+  see("outflow", report.outflow);
+  see("volume_rate_sum", report.volume_rate_sum);
+  see("storage_rate", report.storage_rate);
+  see("mass_error", report.mass_error);
+  see("fluid_volume", report.fluid_volume);
+  see("fluid_came_in", report.fluid_came_in);
+  see("fluid_balance_error", report.fluid_balance_error);
+  see("permeability", report.permeability);
+  see("permeability_tensor", report.permeability_tensor);
+  see("permeability_error", report.permeability_error);
+  see("degenerate_share", report.degenerate_share);
+  see("outside_range", report.outside_range);
+  see("force_sum", report.force_sum);
+  see("force_balance_error", report.force_balance_error);
+  see("residual", report.residual);
+  see("solver", report.solver);
+  see("ordering", report.ordering);
+  see("conductance", report.conductance);
+  see("faces", report.faces);
+  see("openings", report.openings);
+  see("counts", report.counts);
+  see("seconds", report.seconds);
+  see("wall_seconds", report.wall_seconds);
+  see("threads", report.threads);
+  see("peak_memory_bytes", report.peak_memory_bytes);
+}
+
 }  // namespace pfv

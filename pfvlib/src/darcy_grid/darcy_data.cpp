@@ -148,7 +148,7 @@ void DarcyData::refuse_undetermined() const {
   bool flux = false;
   for (const GridFace& face : built->faces) {
     const Boundary& boundary = boundary_of(box, face.boundary);
-    flux = flux || (boundary.kind == Boundary::Kind::flux && boundary.value != 0.0);
+    flux = flux || boundary.drives_flux();
   }
   if (last.moving || flux)
     throw InputError(std::string("darcy_grid: ") +

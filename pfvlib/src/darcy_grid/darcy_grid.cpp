@@ -2,7 +2,6 @@
 #include "pfv/darcy_grid.hpp"
 
 #include "darcy_grid/darcy_data.hpp"
-#include "io/number_text.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
 #include "problem/box_changes.hpp"
@@ -27,42 +26,6 @@ void refuse_what_has_no_cells(const Box& box) {
 }
 
 }  // namespace
-
-const char* name_of(DragLaw law) {
-  return law == DragLaw::kozeny_carman ? "kozeny_carman" : "di_felice";
-}
-
-DragLaw drag_law_named(const std::string& name) {
-  for (const DragLaw law : {DragLaw::di_felice, DragLaw::kozeny_carman})
-    if (name == name_of(law)) return law;
-  throw InputError("unknown drag law '" + name + "': use one of di_felice, kozeny_carman");
-}
-
-void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options) {
-  double cells = 1.0;
-  for (const int count : grid.cells) {
-    if (count < 1)
-      throw InputError("darcy_grid: " + std::to_string(count) +
-                       " cells along an axis: give a whole number >= 1");
-    cells *= count;
-  }
-  if (cells > std::numeric_limits<int>::max() / 8)
-    throw InputError("darcy_grid: " + detail::number_text(cells) +
-                     " cells are too many: give fewer");
-  if (grid.refresh_every < 1)
-    throw InputError("darcy_grid: the porosity is looked at every " +
-                     std::to_string(grid.refresh_every) + " steps: give a whole number >= 1");
-  const Options defaults;
-  refuse_if(fluid.bulk_modulus.has_value(), "bulk modulus");
-  refuse_if(options.partition != defaults.partition, "partition of throats");
-  refuse_if(options.volume_rates != defaults.volume_rates, "choice of volume rates");
-  refuse_if(options.torques, "torques");
-  refuse_if(options.conductance != defaults.conductance, "conductance law");
-  refuse_if(options.retriangulation_strain != defaults.retriangulation_strain,
-            "retriangulation strain");
-  refuse_if(options.strain_measure != defaults.strain_measure, "strain measure");
-  refuse_if(options.rebuild_lag != defaults.rebuild_lag, "rebuild lag");
-}
 
 std::unique_ptr<FlowModel> make_flow(const Box& box, const Fluid& fluid, const Options& options,
                                      const std::optional<DarcyOptions>& grid) {

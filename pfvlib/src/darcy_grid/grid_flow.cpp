@@ -8,7 +8,6 @@ namespace pfv {
 
 namespace {
 
-using Kind = Boundary::Kind;
 
 /// m³/(Pa s) from a cell's centre to its face.
 double half_cell(const Grid& grid, int axis, double mobility) {
@@ -32,7 +31,7 @@ double reference_pressure(const Grid& grid, const std::vector<GridFace>& faces, 
   double sum = 0.0;
   int count = 0;
   for (const GridFace& face : faces)
-    if (boundary_of(box, face.boundary).kind == Kind::pressure) {
+    if (boundary_of(box, face.boundary).imposes_pressure()) {
       sum += pressure_on(grid, face, box, time);
       ++count;
     }
@@ -41,7 +40,7 @@ double reference_pressure(const Grid& grid, const std::vector<GridFace>& faces, 
 
 bool has_pressure(const std::vector<GridFace>& faces, const Box& box) {
   for (const GridFace& face : faces)
-    if (boundary_of(box, face.boundary).kind == Kind::pressure) return true;
+    if (boundary_of(box, face.boundary).imposes_pressure()) return true;
   return false;
 }
 
@@ -53,16 +52,16 @@ GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const B
   for (const GridFace& face : faces) ++shares[face.boundary];
   for (std::size_t b = 0; b < shares.size(); ++b) {
     const Boundary& boundary = boundary_of(box, static_cast<int>(b));
-    if (boundary.kind == Kind::flux && boundary.value != 0.0 && shares[b] == 0)
+    if (boundary.drives_flux() && shares[b] == 0)
       throw InputError(boundary_name(box, static_cast<int>(b)) +
                        ": its flux has no cell to enter, since patches cover it; give the flux to "
                        "another face or use more cells");
   }
   for (Eigen::Index f = 0; f < count; ++f) {
     const Boundary& boundary = boundary_of(box, faces[f].boundary);
-    if (boundary.kind == Kind::pressure)
+    if (boundary.imposes_pressure())
       drive.imposed[f] = pressure_on(grid, faces[f], box, time) - reference;
-    if (boundary.kind == Kind::flux)  // all faces of a boundary are equal: they share by number
+    if (boundary.imposes_flux())  // all faces of a boundary are equal: they share by number
       drive.inflow[f] = boundary.value / shares[faces[f].boundary];
   }
   return drive;
@@ -72,7 +71,7 @@ SymmetricMatrix assemble(const Grid& grid, const std::vector<GridFace>& faces, c
                          const Eigen::VectorXd& mobility) {
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(grid.size());
   for (const GridFace& face : faces)
-    if (boundary_of(box, face.boundary).kind == Kind::pressure)
+    if (boundary_of(box, face.boundary).imposes_pressure())
       diagonal[face.cell] += half_cell(grid, axis_of(face.face), mobility[face.cell]);
   // in ascending order of the neighbours' numbers
   constexpr std::array<Face, 3> before{Face::zlo, Face::ylo, Face::xlo};
@@ -105,7 +104,7 @@ Eigen::VectorXd right_hand_side(const Grid& grid, const std::vector<GridFace>& f
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto i = static_cast<Eigen::Index>(f);
     b[faces[f].cell] += drive.inflow[i];
-    if (boundary_of(box, faces[f].boundary).kind == Kind::pressure)
+    if (boundary_of(box, faces[f].boundary).imposes_pressure())
       b[faces[f].cell] +=
           half_cell(grid, axis_of(faces[f].face), mobility[faces[f].cell]) * drive.imposed[i];
   }
@@ -135,7 +134,7 @@ GridFields fields_of(const Grid& grid, const std::vector<GridFace>& faces, const
     const auto i = static_cast<Eigen::Index>(f);
     const int cell = faces[f].cell, axis = axis_of(faces[f].face);
     const double half = half_cell(grid, axis, mobility[cell]);
-    const bool open = boundary_of(box, faces[f].boundary).kind == Kind::pressure;
+    const bool open = boundary_of(box, faces[f].boundary).imposes_pressure();
     fields.face_inflow[i] =
         open ? half * (drive.imposed[i] - pressures[cell]) : drive.inflow[i];
     fields.face_pressure[i] =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "darcy_grid/darcy_data.hpp"
 #include "results/balance_terms.hpp"
-#include "solve/solver_abilities.hpp"
+#include "problem/solver_abilities.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/atomic_file.hpp"
-#include "io/number_text.hpp"
+#include "text/number_text.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/number_text.hpp"
-#include "io/text_lines.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 

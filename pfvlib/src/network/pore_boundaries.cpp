@@ -114,7 +114,7 @@ PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Box& box) 
   result.no_slip_faces.assign(network.pores(), 0);
   for (const auto& contact : result.contacts)
     if (box.faces[contact.face].wall == Wall::no_slip &&
-        boundary_of(box, contact.boundary).kind == Boundary::Kind::sealed)
+        !boundary_of(box, contact.boundary).is_open())
       result.no_slip_faces[contact.pore] |= static_cast<std::uint8_t>(1u << contact.face);
   give_to_regions(result.contacts, network, box);
   return result;

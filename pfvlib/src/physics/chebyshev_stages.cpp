@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/chebyshev_stages.hpp"
 
-#include "io/number_text.hpp"
+#include "text/number_text.hpp"
 #include "pfv/error.hpp"
 
 #include <string>

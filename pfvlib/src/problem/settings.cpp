@@ -1,296 +1,345 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/number_text.hpp"
-#include "pfv/box.hpp"
-#include "pfv/error.hpp"
-#include "pfv/fluid.hpp"
-#include "pfv/options.hpp"
-#include "solve/solver_abilities.hpp"
+// The table of settings: how each is written, where it goes, what it may be and who reads it.
+#include "pfv/settings.hpp"
 
-#include <cmath>
-#include <cstddef>
-#include <utility>
+#include "problem/solver_abilities.hpp"
+#include "text/number_text.hpp"
 
 namespace pfv {
 namespace {
 
 using detail::number_text;
 
-constexpr std::array<const char*, 6> face_names{"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
-constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+// ------------------------------------------------- a value by its type: read, written, looked at
+
+std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
+
+void read_value(Words& words, const std::string& noun, const Demand& demand, double& value) {
+  value = words.number("the " + noun, demand);
+}
+void read_value(Words& words, const std::string& noun, const Demand& demand, std::optional<double>& value) {
+  value = words.number("the " + noun, demand);
+}
+void read_value(Words& words, const std::string& noun, const Demand& demand, int& value) {
+  value = words.whole_number("the " + noun, demand);
+}
+void read_value(Words& words, const std::string& noun, const Demand& demand, Eigen::Vector3d& value) {
+  for (int axis = 0; axis < 3; ++axis) value[axis] = words.number(noun + " along " + axis_name(axis), demand);
+}
+void read_value(Words& words, const std::string& noun, const Demand& demand, std::array<int, 3>& value) {
+  for (int axis = 0; axis < 3; ++axis)
+    value[static_cast<std::size_t>(axis)] =
+        words.whole_number("the number of " + noun + " along " + axis_name(axis), demand);
+}
+
+std::string text_of(double value) { return number_text(value); }
+std::string text_of(const std::optional<double>& value) { return value ? number_text(*value) : "none"; }
+std::string text_of(int value) { return std::to_string(value); }
+std::string text_of(const Eigen::Vector3d& value) {
+  return number_text(value[0]) + ' ' + number_text(value[1]) + ' ' + number_text(value[2]);
+}
+std::string text_of(const std::array<int, 3>& value) {
+  return text_of(value[0]) + ' ' + text_of(value[1]) + ' ' + text_of(value[2]);
+}
+
+void check_value(const std::string& noun, const Demand& demand, double value) {
+  if (!demand.met(value)) throw InputError(noun + " is " + number_text(value) + ": give " + demand.text);
+}
+void check_value(const std::string& noun, const Demand& demand, const std::optional<double>& value) {
+  if (value) check_value(noun, demand, *value);
+}
+void check_value(const std::string& noun, const Demand& demand, const Eigen::Vector3d& value) {
+  for (int axis = 0; axis < 3; ++axis) check_value(noun + " along " + axis_name(axis), demand, value[axis]);
+}
+void check_value(const std::string& noun, const Demand& demand, const std::array<int, 3>& value) {
+  for (int axis = 0; axis < 3; ++axis)
+    check_value("the number of " + noun + " along " + axis_name(axis), demand,
+                value[static_cast<std::size_t>(axis)]);
+}
 
 template <class Value>
-using Named = std::pair<Value, const char*>;
+int words_of(const Value&) { return 1; }
+int words_of(const Eigen::Vector3d&) { return 3; }
+int words_of(const std::array<int, 3>&) { return 3; }
 
-constexpr std::array<Named<ConductanceLaw>, 3> conductance_laws{
-    {{ConductanceLaw::hydraulic_radius, "hydraulic_radius"},
-     {ConductanceLaw::effective_radius, "effective_radius"},
-     {ConductanceLaw::open_throat, "open_throat"}}};
-constexpr std::array<Named<Partition>, 2> partitions{
-    {{Partition::signed_angles, "signed"}, {Partition::yade, "yade"}}};
-constexpr std::array<Named<SolverKind>, 8> solvers{{{SolverKind::automatic, "auto"},
-                                                    {SolverKind::supernodal, "supernodal"},
-                                                    {SolverKind::cholmod, "cholmod"},
-                                                    {SolverKind::tacho, "tacho"},
-                                                    {SolverKind::klu2, "klu2"},
-                                                    {SolverKind::mumps, "mumps"},
-                                                    {SolverKind::cg, "cg"},
-                                                    {SolverKind::gauss_seidel, "gauss_seidel"}}};
-constexpr std::array<Named<OrderingKind>, 4> orderings{{{OrderingKind::automatic, "auto"},
-                                                        {OrderingKind::geometric, "geometric"},
-                                                        {OrderingKind::metis, "metis"},
-                                                        {OrderingKind::amd, "amd"}}};
-constexpr std::array<Named<StrainMeasure>, 2> strain_measures{
-    {{StrainMeasure::largest, "largest"}, {StrainMeasure::mean, "mean"}}};
-constexpr std::array<Named<VolumeRates>, 2> volume_rate_operators{
-    {{VolumeRates::reciprocal, "reciprocal"}, {VolumeRates::geometric, "geometric"}}};
-constexpr std::array<Named<Coupling>, 4> couplings{{{Coupling::explicit_step, "explicit"},
-                                                    {Coupling::staged, "staged"},
-                                                    {Coupling::implicit, "implicit"},
-                                                    {Coupling::automatic, "auto"}}};
-constexpr std::array<Named<Precision>, 2> precisions{
-    {{Precision::full, "double"}, {Precision::mixed, "mixed"}}};
+// ---------------------------------------------------------------------------------- kinds of rows
 
-template <class Value, std::size_t N>
-const char* name_in(const std::array<Named<Value>, N>& table, Value value, const char* what) {
-  for (const auto& [candidate, name] : table)
-    if (candidate == value) return name;
-  throw InputError(std::string("unknown ") + what + " number " +
-                   std::to_string(static_cast<int>(value)) + ": use one that options.hpp names");
+const std::vector<Model> any_model{Model::pores, Model::darcy_grid}, pores{Model::pores},
+    grid{Model::darcy_grid};
+
+/// What a row says of itself, before it is known where its value goes.
+Setting row(const char* group, const char* name, const char* help, Hosts hosts, std::vector<Model> models) {
+  Setting setting;
+  setting.group = group;
+  setting.name = name;
+  setting.help = help;
+  setting.hosts = hosts;
+  setting.models = std::move(models);
+  setting.unit = "";
+  return setting;
 }
 
-template <class Value, std::size_t N>
-Value value_in(const std::array<Named<Value>, N>& table, const std::string& wanted,
-               const char* what) {
-  std::string known;
-  for (const auto& [value, name] : table) {
-    if (wanted == name) return value;
-    known += (known.empty() ? "" : ", ") + std::string(name);
+/// A place in the settings: a part and the value in it.
+template <class Part, class Value>
+struct Place {
+  Part Settings::*part;
+  Value Part::*value;
+  Value& operator()(Settings& settings) const { return settings.*part.*value; }
+  const Value& operator()(const Settings& settings) const { return settings.*part.*value; }
+};
+
+template <class Part, class Value>
+Setting number(Setting setting, const char* noun, const char* values, const char* unit, const Demand& demand,
+               Place<Part, Value> place) {
+  setting.noun = noun;
+  setting.values = values;
+  setting.unit = unit;
+  setting.words = words_of(place(Settings{}));
+  setting.read = [noun = setting.noun, &demand, place](Settings& settings, Words& words) {
+    read_value(words, noun, demand, place(settings));
+  };
+  setting.text = [place](const Settings& settings) { return text_of(place(settings)); };
+  setting.check = [noun = setting.noun, &demand, place](const Settings& settings) {
+    check_value(noun, demand, place(settings));
+  };
+  return setting;
+}
+
+template <class Part>
+Setting yes_or_no(Setting setting, const char* noun, Place<Part, bool> place) {
+  setting.noun = noun;
+  setting.values = "yes|no";
+  setting.words = 0;
+  setting.read = [place](Settings& settings, Words& words) { place(settings) = words.yes_or_no(); };
+  setting.text = [place](const Settings& settings) { return place(settings) ? "yes" : "no"; };
+  setting.check = [](const Settings&) {};
+  return setting;
+}
+
+template <class Part, class Enum>
+Setting choice(Setting setting, const char* noun, Place<Part, Enum> place) {
+  setting.noun = noun;
+  setting.values = names_of<Enum>("|");
+  setting.read = [place](Settings& settings, Words& words) { place(settings) = words.choice<Enum>(); };
+  setting.text = [place](const Settings& settings) { return name_of(place(settings)); };
+  setting.check = [place](const Settings& settings) { name_of(place(settings)); };
+  return setting;
+}
+
+Setting of_solvers(Setting setting, bool SolverAbilities::*trait) {
+  setting.solvers = trait;
+  return setting;
+}
+
+template <class Value> Place<Fluid, Value> fluid(Value Fluid::*value) { return {&Settings::fluid, value}; }
+template <class Value> Place<Options, Value> option(Value Options::*value) { return {&Settings::options, value}; }
+template <class Value> Place<DarcyOptions, Value> darcy(Value DarcyOptions::*value) {
+  return {&Settings::darcy, value};
+}
+template <class Value> Place<StepSettings, Value> step(Value StepSettings::*value) {
+  return {&Settings::steps, value};
+}
+
+// ------------------------------------------------------------------------- rows of several words
+
+/// Behind the name of a grid, in the fix, what it is made of.
+void read_model(Settings& settings, Words& words) {
+  settings.model = words.choice<Model>();
+  if (settings.model != Model::darcy_grid || words.done()) return;
+  read(*setting_named("cells"), words, settings);
+  for (bool taken = true; taken;) {
+    taken = false;
+    for (const Setting& setting : all_settings())
+      if (setting.hosts.of_grid && words.take(setting.name)) {
+        read(setting, words, settings);
+        taken = true;
+      }
   }
-  throw InputError(std::string("unknown ") + what + " '" + wanted + "': use one of " + known);
 }
 
-void require_finite(double value, const std::string& what) {
-  if (!std::isfinite(value))
-    throw InputError(what + " is " + number_text(value) + ": give a finite number");
+Setting model() {
+  Setting setting = row("Method", "model", "pores between the grains, or Darcy flow on a coarse grid",
+                        {true, true}, any_model);
+  setting.noun = "model";
+  setting.values = names_of<Model>("|");
+  setting.read = read_model;
+  setting.text = [](const Settings& settings) { return name_of(settings.model); };
+  setting.check = [](const Settings& settings) { name_of(settings.model); };
+  return setting;
 }
 
-void require_positive(double value, const std::string& what) {
-  if (!std::isfinite(value) || value <= 0)
-    throw InputError(what + " is " + number_text(value) + ": give a finite number > 0");
+Setting retriangulate() {
+  Setting setting = number(row("Steps", "retriangulate",
+                               "accumulated pore strain at which the network is built anew; mean: that of all pores",
+                               {false, true, true}, pores),
+                           "retriangulation strain", "[mean] STRAIN", "", demands::positive_or_infinite,
+                           option(&Options::retriangulation_strain));
+  setting.read = [strain = setting.read](Settings& settings, Words& words) {
+    if (words.take("mean")) settings.options.strain_measure = StrainMeasure::mean;
+    strain(settings, words);
+  };
+  setting.text = [strain = setting.text](const Settings& settings) {
+    return (settings.options.strain_measure == StrainMeasure::mean ? "mean " : "") + strain(settings);
+  };
+  return setting;
 }
 
-std::string interval(double lower, double upper) {
-  return "[" + number_text(lower) + ", " + number_text(upper) + "]";
-}
-
-void check_edge(const Box& box, int axis) {
-  const double lower = box.lower[axis], upper = box.upper[axis];
-  const std::string where = std::string("box along ") + axis_names[axis];
-  require_finite(lower, where + ": lower bound");
-  require_finite(upper, where + ": upper bound");
-  require_finite(upper - lower, where + ": length");
-  if (upper <= lower)
-    throw InputError(where + " is " + interval(lower, upper) +
-                     ", flat or inverted: give the lower bound first");
-}
-
-void check(const Boundary& boundary, const std::string& where) {
-  switch (boundary.kind) {
-    case Boundary::Kind::sealed: return;
-    case Boundary::Kind::pressure: require_finite(boundary.value, where + ": pressure"); return;
-    case Boundary::Kind::flux: require_finite(boundary.value, where + ": flux"); return;
+void read_couple_every(Settings& settings, Words& words) {
+  StepSettings& steps = settings.steps;
+  steps.couple_every = 1;
+  if (!words.take("auto")) {
+    steps.couple_error.reset();
+    steps.couple_every = words.whole_number("auto or the number of steps", demands::count);
+    return;
   }
-  throw InputError(where + ": unknown kind of boundary: use sealed, pressure or flux");
+  steps.couple_error = words.take("error") ? words.number("the error in per cent", demands::percent) / 100.0
+                                           : StepSettings{}.couple_error;
 }
 
-// A rectangle may reach beyond its face, since faces move: the part on the face counts.
-void check_extent(const Box& box, const Patch& patch, int axis, int first,
-                  const std::string& where) {
-  const double from = patch.rectangle[first], to = patch.rectangle[first + 1];
-  const std::string along = where + " along " + axis_names[axis];
-  require_finite(from, along + ": lower bound");
-  require_finite(to, along + ": upper bound");
-  if (to <= from)
-    throw InputError(along + " is " + interval(from, to) +
-                     ", flat or inverted: give the lower bound first");
-  if (to <= box.lower[axis] || from >= box.upper[axis])
-    throw InputError(along + " is " + interval(from, to) + ", outside its face " +
-                     interval(box.lower[axis], box.upper[axis]) + ": move it onto the face");
+Setting couple_every() {
+  Setting setting = row("Steps", "couple_every",
+                        "solve the flow every N time steps, or when the loads have changed by this part of them, "
+                        "per cent",
+                        {false, true, true}, any_model);
+  setting.noun = "couple_every";
+  setting.values = "auto [error PERCENT]|N";
+  setting.read = read_couple_every;
+  setting.text = [](const Settings& settings) {
+    const StepSettings& steps = settings.steps;
+    return steps.couple_error ? "auto error " + number_text(100.0 * *steps.couple_error)
+                              : std::to_string(steps.couple_every);
+  };
+  setting.check = [](const Settings& settings) {
+    check_value("the number of steps of couple_every", demands::count, settings.steps.couple_every);
+    if (settings.steps.couple_error)
+      check_value("the error of couple_every", demands::part, *settings.steps.couple_error);
+  };
+  return setting;
 }
 
-void check_periodic(const Box& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::string where = std::string("pressure gradient along ") + axis_names[axis];
-    require_finite(box.pressure_gradient[axis], where);
-    if (!box.periodic[axis] && box.pressure_gradient[axis] != 0.0)
-      throw InputError(where + ": that axis is not periodic; make it periodic, or give its faces "
-                               "pressures");
-  }
-  for (const Face face : all_faces)
-    if (box.periodic[axis_of(face)] &&
-        (box[face].boundary.kind != Boundary::Kind::sealed || box[face].velocity != 0.0))
-      throw InputError(std::string("face ") + name_of(face) +
-                       " stands on a periodic axis: it can have neither a boundary nor a velocity");
-  for (const Patch& patch : box.patches)
-    if (box.periodic[axis_of(patch.face)])
-      throw InputError(std::string("a patch on face ") + name_of(patch.face) +
-                       " stands on a periodic axis: remove it");
+// -------------------------------------------------------------------------------------- the table
+
+//                 command fix modify of_grid
+constexpr Hosts command{true, false, false, false}, fix{false, true, false, false},
+    both{true, true, false, false}, both_and_modify{true, true, true, false},
+    modify_alone{false, false, true, false}, in_model{false, false, false, true},
+    command_and_in_model{true, false, false, true};
+
+std::vector<Setting> of_fluid() {
+  return {
+      number(row("Fluid", "viscosity", "dynamic viscosity of the fluid; always to be given in the fix",
+                 both_and_modify, any_model),
+             "viscosity", "MU", "Pa s", demands::positive, fluid(&Fluid::viscosity)),
+      number(row("Fluid", "density", "density of the fluid, used with gravity only", both, any_model), "density",
+             "RHO", "kg/m3", demands::not_negative, fluid(&Fluid::density)),
+      number(row("Fluid", "gravity", "gravity; adds buoyancy to the forces", command, any_model), "gravity",
+             "GX GY GZ", "m/s2", demands::finite, fluid(&Fluid::gravity)),
+      number(row("Fluid", "bulk_modulus", "bulk modulus of the fluid; none: incompressible", both, pores),
+             "bulk modulus", "KF", "Pa", demands::positive, fluid(&Fluid::bulk_modulus)),
+      yes_or_no(row("Fluid", "buoyancy", "add the lift of the grains where there is gravity", fix, any_model),
+                "buoyancy", option(&Options::buoyancy)),
+  };
 }
 
-void check_patch(const Box& box, std::size_t number) {
-  const Patch& patch = box.patches[number];
-  const std::string where =
-      "patch " + std::to_string(number + 1) + " on face " + name_of(patch.face);
-  const int axis = axis_of(patch.face);
-  check_extent(box, patch, axis == 0 ? 1 : 0, 0, where);
-  check_extent(box, patch, axis == 2 ? 1 : 2, 2, where);
-  check(patch.boundary, where);
+std::vector<Setting> of_method() {
+  return {
+      model(),
+      number(row("Method", "cells",
+                 "cells along x, y and z, always to be given; in the fix behind the name of the model", command,
+                 grid),
+             "cells", "NX NY NZ", "", demands::count, darcy(&DarcyOptions::cells)),
+      number(row("Method", "every", "look at the porosity every this many flow steps", in_model, grid),
+             "number of flow steps between two looks at the porosity", "N", "", demands::count,
+             darcy(&DarcyOptions::refresh_every)),
+      choice(row("Method", "drag", "drag on a grain", command_and_in_model, grid), "drag",
+             darcy(&DarcyOptions::drag)),
+      yes_or_no(row("Method", "grain_motion", "grains carry the fluid with them and displace it", in_model, grid),
+                "motion of grains", darcy(&DarcyOptions::grain_motion)),
+      choice(row("Method", "partition",
+                 "geometry of a throat: signed volumes, or YADE's rules to reproduce its results", command, pores),
+             "partition of throats", option(&Options::partition)),
+      choice(row("Method", "conductance", "conductance law of a throat (with partition yade: hydraulic_radius)", both,
+                 pores),
+             "conductance law", option(&Options::conductance)),
+      choice(row("Method", "volume_rates",
+                 "how moving grains change the volumes of pores: by the transpose of the forces, or by the papers' "
+                 "geometry (with partition yade: geometric)",
+                 both, pores),
+             "choice of volume rates", option(&Options::volume_rates)),
+      yes_or_no(row("Method", "torques", "forces act where they lie and turn grains, spins move fluid", both, pores),
+                "torques", option(&Options::torques)),
+      yes_or_no(row("Method", "shear_viscous", "add the viscous forces of neighbours that slide", fix, pores),
+                "shear viscous forces", option(&Options::shear_viscous)),
+  };
 }
 
-// What may run beside another thread that steps on, and gives the same bytes there.
-void check_lag(const Options& options) {
-  if (options.rebuild_lag < 0)
-    throw InputError("the rebuild lag is " + std::to_string(options.rebuild_lag) +
-                     ": give a number of steps, or 0 for rebuilds within a step");
-  if (options.rebuild_lag == 0) return;
-  if (options.ordering == OrderingKind::metis)
-    throw InputError("the ordering metis draws on random numbers that it shares with all threads, so "
-                     "that runs with rebuilds in the background would not repeat: use the ordering "
-                     "geometric, or set rebuild_lag to 0");
+std::vector<Setting> of_solver() {
+  Setting solver = choice(row("Solver", "solver", "linear solver; auto: ", both, any_model), "solver",
+                          option(&Options::solver));
+  solver.help += name_of(resolved(SolverKind::automatic));
+  Setting ordering = choice(row("Solver", "ordering", "fill-reducing ordering of a direct solver; auto: ", both,
+                                any_model),
+                            "ordering", option(&Options::ordering));
+  ordering.help += name_of(resolved(SolverKind::automatic, OrderingKind::automatic));
+  return {
+      solver,
+      ordering,
+      of_solvers(number(row("Solver", "tolerance", "residual over right-hand side where the solver ends", both,
+                            any_model),
+                        "tolerance", "T", "", demands::part, option(&Options::tolerance)),
+                 &SolverAbilities::is_iterative),
+      of_solvers(choice(row("Solver", "precision",
+                            "how the solver keeps its factor: mixed has half as much to read a step and solves to a "
+                            "residual of 1e-9",
+                            both, any_model),
+                        "choice of precision", option(&Options::precision)),
+                 &SolverAbilities::mixed_precision),
+      number(row("Solver", "threads", "threads that share a rebuild or step, 1 to 64; they change no result", both,
+                 any_model),
+             "number of threads", "N", "", demands::threads, option(&Options::threads)),
+  };
 }
 
-void check_region(const Box& box, std::size_t number) {
-  const Region& region = box.regions[number];
-  const std::string where = "region " + std::to_string(number + 1);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double from = region.lower[axis], to = region.upper[axis];
-    const std::string along = where + " along " + axis_names[axis];
-    require_finite(from, along + ": lower bound");
-    require_finite(to, along + ": upper bound");
-    if (to < from)
-      throw InputError(along + " is " + interval(from, to) +
-                       ", inverted: give the lower bound first");
-    if (to < box.lower[axis] || from > box.upper[axis])
-      throw InputError(along + " is " + interval(from, to) + ", outside the box " +
-                       interval(box.lower[axis], box.upper[axis]) + ": move it into the box");
-  }
-  if (region.boundary.kind == Boundary::Kind::sealed)
-    throw InputError(where + " has no boundary: give it a pressure or a flux");
-  check(region.boundary, where);
+std::vector<Setting> of_steps() {
+  return {
+      retriangulate(),
+      number(row("Steps", "rebuild_lag",
+                 "flow steps from the beginning of a network that is built in the background to its first use", fix,
+                 pores),
+             "rebuild lag", "K", "", demands::flow_steps, option(&Options::rebuild_lag)),
+      couple_every(),
+      choice(row("Steps", "coupling", "how forces act over a time step", fix, any_model), "coupling",
+             step(&StepSettings::coupling)),
+      yes_or_no(row("Steps", "time_step_check", "find the limit of the time step at the setup of a run", fix,
+                    any_model),
+                "check of the time step", step(&StepSettings::time_step_check)),
+      number(row("Steps", "safety", "part of the explicit limit that a time step may reach", modify_alone, any_model),
+             "safety factor", "ZETA", "", demands::positive, step(&StepSettings::safety)),
+  };
 }
 
 }  // namespace
 
-const char* name_of(Face face) {
-  const auto number = static_cast<std::size_t>(face);
-  if (number >= face_names.size())
-    throw InputError("unknown face number " + std::to_string(number) + ": use xlo ... zhi");
-  return face_names[number];
+const std::vector<Setting>& all_settings() {
+  static const std::vector<Setting> all = [] {
+    std::vector<Setting> rows;
+    for (auto* part : {of_fluid, of_method, of_solver, of_steps})
+      for (Setting& setting : part()) rows.push_back(std::move(setting));
+    return rows;
+  }();
+  return all;
 }
 
-Face face_named(const std::string& name) {
-  for (const Face face : all_faces)
-    if (name == name_of(face)) return face;
-  throw InputError("unknown face '" + name + "': use one of xlo, xhi, ylo, yhi, zlo, zhi");
+const Setting* setting_named(const std::string& name) {
+  for (const Setting& setting : all_settings())
+    if (name == setting.name) return &setting;
+  return nullptr;
 }
 
-const char* name_of(ConductanceLaw law) {
-  return name_in(conductance_laws, law, "conductance law");
-}
-const char* name_of(Partition partition) {
-  return name_in(partitions, partition, "partition");
-}
-const char* name_of(SolverKind solver) { return name_in(solvers, solver, "solver"); }
-const char* name_of(OrderingKind ordering) { return name_in(orderings, ordering, "ordering"); }
-const char* name_of(Precision precision) { return name_in(precisions, precision, "precision"); }
-const char* name_of(StrainMeasure measure) {
-  return name_in(strain_measures, measure, "strain measure");
-}
-const char* name_of(VolumeRates rates) {
-  return name_in(volume_rate_operators, rates, "volume rates");
-}
-
-const char* name_of(Coupling coupling) { return name_in(couplings, coupling, "coupling"); }
-
-ConductanceLaw conductance_law_named(const std::string& name) {
-  return value_in(conductance_laws, name, "conductance law");
-}
-Partition partition_named(const std::string& name) {
-  return value_in(partitions, name, "partition");
-}
-SolverKind solver_named(const std::string& name) { return value_in(solvers, name, "solver"); }
-OrderingKind ordering_named(const std::string& name) {
-  return value_in(orderings, name, "ordering");
-}
-Precision precision_named(const std::string& name) {
-  return value_in(precisions, name, "precision");
-}
-VolumeRates volume_rates_named(const std::string& name) {
-  return value_in(volume_rate_operators, name, "volume rates");
-}
-
-Coupling coupling_named(const std::string& name) { return value_in(couplings, name, "coupling"); }
-
-void check(const Box& box) {
-  for (int axis = 0; axis < 3; ++axis) check_edge(box, axis);
-  for (const Face face : all_faces) {
-    const std::string where = std::string("face ") + name_of(face);
-    require_finite(box[face].velocity, where + ": velocity");
-    require_finite(box[face].spin, where + ": spin");
-    if (!box[face].sliding.allFinite() || !box[face].pivot.allFinite() ||
-        box[face].sliding[axis_of(face)] != 0.0)
-      throw InputError(where + ": its sliding velocity and pivot must be finite, and the sliding velocity "
-                       "has no part along the face's axis; that is `velocity`");
-    check(box[face].boundary, where);
-  }
-  for (std::size_t number = 0; number < box.patches.size(); ++number) check_patch(box, number);
-  for (std::size_t number = 0; number < box.regions.size(); ++number) check_region(box, number);
-  check_periodic(box);
-}
-
-void check(const Fluid& fluid) {
-  require_positive(fluid.viscosity, "viscosity");
-  if (!std::isfinite(fluid.density) || fluid.density < 0)
-    throw InputError("density is " + number_text(fluid.density) +
-                     ": give a finite number >= 0");
-  for (int axis = 0; axis < 3; ++axis)
-    require_finite(fluid.gravity[axis], std::string("gravity along ") + axis_names[axis]);
-  if (fluid.bulk_modulus) require_positive(*fluid.bulk_modulus, "bulk modulus");
-}
-
-void check(const Options& options) {
-  name_of(options.conductance);
-  name_of(options.partition);
-  name_of(options.volume_rates);
-  name_of(options.solver);
-  name_of(options.ordering);
-  if (options.outside != OutsideGrains::refuse && options.outside != OutsideGrains::leave_out)
-    throw InputError("unknown rule for grains outside the box: use refuse or leave_out");
-  if (!(options.retriangulation_strain > 0))  // infinite: never, as far as strain goes
-    throw InputError("retriangulation strain is " + number_text(options.retriangulation_strain) +
-                     ": give a number > 0");
-  name_of(options.strain_measure);
-  check_lag(options);
-  check_solver(options);
-  if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
-    throw InputError("tolerance is " + number_text(options.tolerance) +
-                     ": give a number above 0 and below 1");
-  name_of(options.precision);
-  if (options.threads < 1 || options.threads > 64)
-    throw InputError("the number of threads is " + std::to_string(options.threads) +
-                     ": give 1 to 64");
-  if (options.partition == Partition::yade &&
-      options.conductance == ConductanceLaw::open_throat)
-    throw InputError("the yade partition reproduces YADE's results: use it with the conductance law "
-                     "hydraulic_radius (or effective_radius), not with open_throat");
-  if (options.partition == Partition::yade && options.volume_rates != VolumeRates::geometric)
-    throw InputError("the yade partition reproduces YADE's results: use it with geometric volume rates");
-  if (options.torques && options.volume_rates != VolumeRates::reciprocal)
-    throw InputError("torques go with reciprocal volume rates: by geometric ones spins move no fluid");
-  if (!options.forces &&
-      (options.split_forces || options.sphere_pressure || options.shear_viscous))
-    throw InputError("split forces, sphere pressures and shear viscous forces need forces: switch those "
-                     "on too");
+void read(const Setting& setting, Words& words, Settings& settings) {
+  if (!settings.given.insert(setting.name).second)
+    words.fail(std::string(setting.name) + " is given twice; give it once");
+  setting.read(settings, words);
 }
 
 }  // namespace pfv

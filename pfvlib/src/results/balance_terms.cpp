@@ -54,7 +54,7 @@ std::optional<int> axis_of_flow(const Box& box) {
   int axis = -1, open = 0;
   for (const Face face : all_faces) {
     const Boundary& boundary = box[face].boundary;
-    if (boundary.kind == Boundary::Kind::sealed) continue;
+    if (!boundary.is_open()) continue;
     if (boundary.profile) return {};
     ++open;
     if (open == 1) axis = axis_of(face);

@@ -21,10 +21,10 @@ std::vector<double> contact_inflows(const BuiltNetwork& built, const Solution& s
     if (contact.boundary >= first_region(solution.box) &&
         contact.face != PoreBoundaries::inside)
       return false;
-    const Boundary::Kind kind = boundary_of(solution.box, contact.boundary).kind;
+    const Boundary& boundary = boundary_of(solution.box, contact.boundary);
     const int unknown = built.unknowns.of_pore[contact.pore];
-    if (unknown == Unknowns::imposed) return kind == Boundary::Kind::pressure;
-    return kind == Boundary::Kind::flux &&
+    if (unknown == Unknowns::imposed) return boundary.imposes_pressure();
+    return boundary.imposes_flux() &&
            built.unknowns.of_boundary[contact.boundary] == unknown;
   };
   std::vector<double> result(contacts.size(), 0.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/network_report.hpp"
 
-#include "solve/solver_abilities.hpp"
+#include "problem/solver_abilities.hpp"
 
 #include <algorithm>
 

@@ -12,7 +12,7 @@
 #include "solve/amesos2_cholesky.hpp"
 #include "solve/checked_solver.hpp"
 #include "solve/fill_reducing_ordering.hpp"
-#include "solve/solver_abilities.hpp"
+#include "problem/solver_abilities.hpp"
 #include "sparse/sparse_error.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>

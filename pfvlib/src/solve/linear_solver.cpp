@@ -3,12 +3,12 @@
 
 #include "solve/amesos2_solver.hpp"
 #include "solve/iterative_solvers.hpp"
-#include "solve/solver_abilities.hpp"
+#include "problem/solver_abilities.hpp"
 
 namespace pfv {
 
 std::unique_ptr<LinearSolver> make_solver(const Options& options, std::shared_ptr<Team> team) {
-  check_solver(options);
+  check(options);
   const SolverKind kind = resolved(options.solver);
   switch (kind) {
     case SolverKind::cg: return std::make_unique<ConjugateGradient>(options.tolerance);

@@ -3,6 +3,7 @@
 
 #include "parallel/team.hpp"
 #include "pfv/options.hpp"
+#include "problem/solver_abilities.hpp"
 #include "sparse/symmetric_matrix.hpp"
 
 #include <Eigen/Core>

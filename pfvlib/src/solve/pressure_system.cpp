@@ -21,9 +21,9 @@ std::vector<PoreCondition> conditions_of_pores(const PoreNetwork& network,
   std::vector<PoreCondition> conditions(network.pores());
   for (const auto& contact : boundaries.contacts) {
     PoreCondition& condition = conditions[contact.pore];
-    const Boundary::Kind kind = boundary_of(box, contact.boundary).kind;
-    if (kind == Boundary::Kind::pressure) condition.pressure = true;
-    if (kind == Boundary::Kind::flux && condition.flux_boundary < 0)
+    const Boundary& boundary = boundary_of(box, contact.boundary);
+    if (boundary.imposes_pressure()) condition.pressure = true;
+    if (boundary.imposes_flux() && condition.flux_boundary < 0)
       condition.flux_boundary = contact.boundary;
   }
   return conditions;
@@ -127,8 +127,7 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
   }
   for (int b = 0; b < static_cast<int>(unknowns.of_boundary.size()); ++b) {
     const Boundary& boundary = boundary_of(box, b);
-    if (boundary.kind == Boundary::Kind::flux && boundary.value != 0.0 &&
-        unknowns.of_boundary[b] < 0)
+    if (boundary.drives_flux() && unknowns.of_boundary[b] < 0)
       throw InputError(boundary_name(box, b) +
                        ": its flux has no pore to enter (all its pores carry an imposed pressure, "
                        "or it has none); give the flux to another face or enlarge the patch or region");
@@ -145,7 +144,7 @@ void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundari
     int count = 0;
     for (last = first; last < contacts.size() && contacts[last].pore == pore; ++last) {
       const Boundary& boundary = boundary_of(box, contacts[last].boundary);
-      if (boundary.kind != Boundary::Kind::pressure) continue;
+      if (!boundary.imposes_pressure()) continue;
       sum += boundary.profile
                  ? boundary.profile(network.origin + network.pore_centres.col(pore), time)
                  : boundary.value;

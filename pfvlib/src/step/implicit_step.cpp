@@ -22,12 +22,7 @@ constexpr double theta = 2.0 / 3.0;
 }  // namespace
 
 void ImplicitStep::check(const Problem& problem) const {
-  if (problem.options.shear_viscous)
-    throw InputError("shear viscous forces have no implicit step; use the staged coupling");
-  if (problem.options.rebuild_lag > 0)
-    throw InputError("the implicit coupling factors a matrix with the masses of the grains, which is "
-                     "not done in the background: set rebuild_lag to 0, or take the staged coupling");
-  check_long_step(problem);
+  check_long_step(problem, Coupling::implicit);
 }
 
 void ImplicitStep::forget_factor() {

@@ -9,10 +9,8 @@
 
 namespace pfv {
 
-void check_long_step(const Problem& problem) {
-  if (problem.options.volume_rates == VolumeRates::geometric)
-    throw InputError("geometric volume rates go with explicit steps alone: they feed some motions, which "
-                     "long steps outgrow; take reciprocal ones");
+void check_long_step(const Problem& problem, Coupling coupling) {
+  check(problem.options, coupling);
   if (!problem.options.forces)
     throw InputError("a staged or implicit step needs forces: switch Options::forces on");
   refuse_periodic_shear(problem);

@@ -19,7 +19,7 @@ struct ForcedMotion {
 };
 
 /// Throws InputError for settings that no long step can serve.
-void check_long_step(const Problem& problem);
+void check_long_step(const Problem& problem, Coupling coupling);
 /// Throws InputError for masses and forces that are missing or make no sense.
 void check_dynamics(const GrainDynamics& dynamics, const Packing& packing);
 

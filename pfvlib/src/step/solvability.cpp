@@ -14,11 +14,9 @@ namespace pfv {
 
 namespace {
 
-bool any_boundary(const Box& box, Boundary::Kind kind, bool nonzero_only = false) {
-  for (int b = 0; b < boundary_count(box); ++b) {
-    const Boundary& boundary = boundary_of(box, b);
-    if (boundary.kind == kind && (!nonzero_only || boundary.value != 0.0)) return true;
-  }
+bool any_boundary(const Box& box, bool (Boundary::*is)() const) {
+  for (int b = 0; b < boundary_count(box); ++b)
+    if ((boundary_of(box, b).*is)()) return true;
   return false;
 }
 
@@ -64,13 +62,13 @@ std::vector<int> spheres_at(const PoreNetwork& network, int throat) {
 void refuse_undetermined(const Problem& problem, bool moving) {
   const auto& [box, fluid, options, team] = problem;
   // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
-  if (fluid.bulk_modulus || box.any_periodic() || any_boundary(box, Boundary::Kind::pressure))
+  if (fluid.bulk_modulus || box.any_periodic() || any_boundary(box, &Boundary::imposes_pressure))
     return;
   if (moving)
     throw InputError("the grains or faces move, the fluid is incompressible, and no face, patch "
                      "or region has a pressure: nothing determines the pressure; give a pressure to a face, "
                      "or a bulk modulus");
-  if (any_boundary(box, Boundary::Kind::flux, true))
+  if (any_boundary(box, &Boundary::drives_flux))
     throw InputError("a flux is imposed, the fluid is incompressible, and no face, patch or region has a "
                      "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
                      "modulus");

@@ -13,7 +13,7 @@ class StagedStep final : public StepScheme {
   /// `limit`: of the explicit step, kept for the same network; must outlive this.
   explicit StagedStep(TimeStepLimit& limit) : limit_(limit) {}
 
-  void check(const Problem& problem) const override { check_long_step(problem); }
+  void check(const Problem& problem) const override { check_long_step(problem, Coupling::staged); }
   double direction() const override { return 1.0; }
   void find(const StepTask& task, Solution& solution) override;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/solver_abilities.hpp"
+#include "problem/solver_abilities.hpp"
 
 #include "pfv/error.hpp"
 
@@ -32,32 +32,6 @@ constexpr SolverAbilities table[] = {
     {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, true},
 };
 
-/// "the solver a, b or c".
-template <class Ability>
-std::string solvers_with(const Ability& ability) {
-  std::vector<std::string> names;
-  for (const SolverAbilities& solver : table)
-    if (solver.is_built && ability(solver)) names.push_back(name_of(solver.solver));
-  std::string text = "the solver ";
-  for (std::size_t k = 0; k < names.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == names.size() ? " or " : ", ") + names[k];
-  return text;
-}
-
-[[noreturn]] void refuse(const SolverAbilities& solver, const std::string& why) {
-  throw InputError(std::string("the solver ") + name_of(solver.solver) + " " + why);
-}
-
-void check_ordering(const SolverAbilities& solver, OrderingKind ordering) {
-  if (solver.takes_orderings || ordering == Ordering::automatic || ordering == solver.own_ordering)
-    return;
-  const std::string own = solver.own_ordering == Ordering::automatic
-                              ? "auto"
-                              : name_of(solver.own_ordering) + std::string(" (its own) or auto");
-  refuse(solver, std::string("takes no ordering ") + name_of(ordering) + "; use the ordering " + own +
-                     ", or " + solvers_with([](const auto& s) { return s.takes_orderings; }));
-}
-
 /// Who makes an ordering for a solver.
 std::string orderer(const SolverAbilities& solver, OrderingKind ordering) {
   if (!solver.takes_orderings) return solver.analysed;
@@ -84,23 +58,30 @@ OrderingKind resolved(SolverKind solver, OrderingKind ordering) {
 
 bool is_iterative(SolverKind solver) { return abilities_of(solver).is_iterative; }
 
-void check_solver(const Options& options) {
-  const SolverAbilities& solver = abilities_of(options.solver);
+std::string solvers_with(bool SolverAbilities::*ability) {
+  std::vector<std::string> names;
+  for (const SolverAbilities& solver : table)
+    if (solver.is_built && solver.*ability) names.push_back(name_of(solver.solver));
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == names.size() ? " or " : ", ") + names[k];
+  return text;
+}
+
+void check(SolverKind kind, OrderingKind ordering) {
+  const SolverAbilities& solver = abilities_of(kind);
+  const std::string name = name_of(solver.solver);
   if (!solver.is_built)
-    throw InputError(std::string("this build has no solver ") + name_of(solver.solver) +
+    throw InputError("this build has no solver " + name +
                      "; configure it with -DPFV_WITH_MUMPS=ON, or use another solver");
-  check_ordering(solver, options.ordering);
-  if (options.rebuild_lag > 0 && !solver.factors_beside_steps)
-    refuse(solver, "does not factor in the background: use " +
-                       solvers_with([](const auto& s) { return s.factors_beside_steps; }) +
-                       ", or set rebuild_lag to 0");
-  if (options.tolerance != default_tolerance && !solver.is_iterative)
-    refuse(solver, "is direct and takes no tolerance; use " +
-                       solvers_with([](const auto& s) { return s.is_iterative; }));
-  if (options.precision == Precision::mixed && !solver.mixed_precision)
-    refuse(solver, "takes no mixed precision; use " +
-                       solvers_with([](const auto& s) { return s.mixed_precision; }) +
-                       ", or the precision double");
+  if (solver.takes_orderings || ordering == Ordering::automatic || ordering == solver.own_ordering)
+    return;
+  const std::string own = solver.own_ordering == Ordering::automatic
+                              ? "auto"
+                              : name_of(solver.own_ordering) + std::string(" (its own) or auto");
+  throw InputError("the solver " + name + " takes no ordering " + name_of(ordering) +
+                   "; use the ordering " + own + ", or the solver " +
+                   solvers_with(&SolverAbilities::takes_orderings));
 }
 
 std::string made_of(SolverKind solver, OrderingKind ordering) {

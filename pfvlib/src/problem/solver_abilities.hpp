@@ -8,7 +8,7 @@
 namespace pfv {
 
 /// What a solver is made of and what it can do: the one place that says so. Every check of the options
-/// and every error about them reads it.
+/// and every error about them reads it; how solvers work is the business of solve/.
 struct SolverAbilities {
   SolverKind solver;
   bool is_built;              ///< whether this build has it
@@ -26,9 +26,11 @@ struct SolverAbilities {
 /// Of a solver, `automatic` among them. Throws InputError for one that options.hpp does not name.
 const SolverAbilities& abilities_of(SolverKind solver);
 
-/// Throws InputError where the solver does not take the ordering, tolerance, precision or rebuild lag, and
-/// names those that do.
-void check_solver(const Options& options);
+/// "cg or gauss_seidel": the solvers of this build with an ability, for messages and tables.
+std::string solvers_with(bool SolverAbilities::*ability);
+
+/// Throws InputError for a solver that this build lacks and for an ordering that the solver does not take.
+void check(SolverKind solver, OrderingKind ordering);
 
 /// What `automatic` stands for where the places of the unknowns are given.
 SolverKind resolved(SolverKind solver);

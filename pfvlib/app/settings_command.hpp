@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <iosfwd>
+
+namespace pfv::app {
+
+/// Writes the table of settings as the page doc/settings.md.
+void write_settings(std::ostream& out);
+
+/// Writes the settings of fix pfv in the form of LIGGGHTS' pages, a block of doc/fix_pfv.md.
+void write_fix_syntax(std::ostream& out);
+
+}  // namespace pfv::app

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pfv/box.hpp"
+#include "pfv/error.hpp"
+#include "text/number_text.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+namespace pfv {
+namespace {
+
+using detail::number_text;
+
+constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+
+void require_finite(double value, const std::string& what) {
+  if (!std::isfinite(value))
+    throw InputError(what + " is " + number_text(value) + ": give a finite number");
+}
+
+std::string interval(double lower, double upper) {
+  return "[" + number_text(lower) + ", " + number_text(upper) + "]";
+}
+
+void check_edge(const Box& box, int axis) {
+  const double lower = box.lower[axis], upper = box.upper[axis];
+  const std::string where = std::string("box along ") + axis_names[axis];
+  require_finite(lower, where + ": lower bound");
+  require_finite(upper, where + ": upper bound");
+  require_finite(upper - lower, where + ": length");
+  if (upper <= lower)
+    throw InputError(where + " is " + interval(lower, upper) +
+                     ", flat or inverted: give the lower bound first");
+}
+
+void check(const Boundary& boundary, const std::string& where) {
+  for (const BoundaryKind& one : boundary_kinds) {
+    if (one.kind != boundary.kind) continue;
+    if (one.symbol) require_finite(boundary.value, where + ": " + one.name);
+    return;
+  }
+  throw InputError(where + ": unknown kind of boundary: use sealed, pressure or flux");
+}
+
+// A rectangle may reach beyond its face, since faces move: the part on the face counts.
+void check_extent(const Box& box, const Patch& patch, int axis, int first,
+                  const std::string& where) {
+  const double from = patch.rectangle[first], to = patch.rectangle[first + 1];
+  const std::string along = where + " along " + axis_names[axis];
+  require_finite(from, along + ": lower bound");
+  require_finite(to, along + ": upper bound");
+  if (to <= from)
+    throw InputError(along + " is " + interval(from, to) +
+                     ", flat or inverted: give the lower bound first");
+  if (to <= box.lower[axis] || from >= box.upper[axis])
+    throw InputError(along + " is " + interval(from, to) + ", outside its face " +
+                     interval(box.lower[axis], box.upper[axis]) + ": move it onto the face");
+}
+
+void check_periodic(const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string where = std::string("pressure gradient along ") + axis_names[axis];
+    require_finite(box.pressure_gradient[axis], where);
+    if (!box.periodic[axis] && box.pressure_gradient[axis] != 0.0)
+      throw InputError(where + ": that axis is not periodic; make it periodic, or give its faces "
+                               "pressures");
+  }
+  for (const Face face : all_faces)
+    if (box.periodic[axis_of(face)] &&
+        (box[face].boundary.is_open() || box[face].velocity != 0.0))
+      throw InputError(std::string("face ") + name_of(face) +
+                       " stands on a periodic axis: it can have neither a boundary nor a velocity");
+  for (const Patch& patch : box.patches)
+    if (box.periodic[axis_of(patch.face)])
+      throw InputError(std::string("a patch on face ") + name_of(patch.face) +
+                       " stands on a periodic axis: remove it");
+}
+
+void check_patch(const Box& box, std::size_t number) {
+  const Patch& patch = box.patches[number];
+  const std::string where =
+      "patch " + std::to_string(number + 1) + " on face " + name_of(patch.face);
+  const int axis = axis_of(patch.face);
+  check_extent(box, patch, axis == 0 ? 1 : 0, 0, where);
+  check_extent(box, patch, axis == 2 ? 1 : 2, 2, where);
+  check(patch.boundary, where);
+}
+
+void check_region(const Box& box, std::size_t number) {
+  const Region& region = box.regions[number];
+  const std::string where = "region " + std::to_string(number + 1);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from = region.lower[axis], to = region.upper[axis];
+    const std::string along = where + " along " + axis_names[axis];
+    require_finite(from, along + ": lower bound");
+    require_finite(to, along + ": upper bound");
+    if (to < from)
+      throw InputError(along + " is " + interval(from, to) +
+                       ", inverted: give the lower bound first");
+    if (to < box.lower[axis] || from > box.upper[axis])
+      throw InputError(along + " is " + interval(from, to) + ", outside the box " +
+                       interval(box.lower[axis], box.upper[axis]) + ": move it into the box");
+  }
+  if (!region.boundary.is_open())
+    throw InputError(where + " has no boundary: give it a pressure or a flux");
+  check(region.boundary, where);
+}
+
+}  // namespace
+
+void check(const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) check_edge(box, axis);
+  for (const Face face : all_faces) {
+    const std::string where = std::string("face ") + name_of(face);
+    require_finite(box[face].velocity, where + ": velocity");
+    require_finite(box[face].spin, where + ": spin");
+    if (!box[face].sliding.allFinite() || !box[face].pivot.allFinite() ||
+        box[face].sliding[axis_of(face)] != 0.0)
+      throw InputError(where + ": its sliding velocity and pivot must be finite, and the sliding velocity "
+                       "has no part along the face's axis; that is `velocity`");
+    check(box[face].boundary, where);
+  }
+  for (std::size_t number = 0; number < box.patches.size(); ++number) check_patch(box, number);
+  for (std::size_t number = 0; number < box.regions.size(); ++number) check_region(box, number);
+  check_periodic(box);
+}
+
+}  // namespace pfv

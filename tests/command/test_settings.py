@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The table of settings: its page is up to date, and what is not read is refused."""
+import pathlib
+import re
+import unittest
+
+from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest
+
+DOC = pathlib.Path(__file__).resolve().parents[2] / "doc"
+
+
+class Settings(CommandTest):
+    def rows(self):
+        """The cells of each row of the table."""
+        page = self.run_pfv("settings").stdout
+        cells = [re.split(r"(?<!\\)\|", line)[1:-1] for line in page.splitlines() if line.startswith("| ")]
+        return [[cell.strip() for cell in row] for row in cells if row[0].strip() != "setting"]
+
+    def test_the_page_is_what_the_command_prints(self):
+        page = self.run_pfv("settings")
+        self.assertEqual(page.returncode, 0)
+        self.assertEqual(page.stdout, (DOC / "settings.md").read_text(),
+                         "doc/settings.md is out of date: pfv settings > doc/settings.md")
+
+    def test_the_page_of_the_fix_has_what_the_command_prints(self):
+        syntax = self.run_pfv("settings", "--fix").stdout
+        self.assertIn("<!-- made by: pfv settings --fix -->\n```\n" + syntax + "```\n",
+                      (DOC / "fix_pfv.md").read_text(), "out of date: pfv settings --fix")
+        for name, _, _, _, fix, *_ in self.rows():
+            if fix.startswith("*"):
+                self.assertIn(f"\n{name} values = ", "\n" + syntax)
+
+    def test_the_help_has_each_option_with_its_default(self):
+        text = self.run_pfv("solve", "--help").stdout
+        for name, _, _, default, _, option, *_ in self.rows():
+            if option:
+                entry = text.split("  --" + name.replace("_", "-") + " ")[1].split("\n  --")[0]
+                self.assertIn(f"(default {default})", " ".join(entry.split()))
+
+    def test_a_setting_that_is_not_read_is_refused_at_its_default_too(self):
+        grid = ["--model", "darcy_grid", "--cells", "2", "2", "2"]
+        for words, parts in ((["--tolerance", "1e-10"], ["cholmod", "no tolerance", "cg"]),
+                             (["--solver", "cg", "--precision", "double"], ["cg", "precision", "cholmod"]),
+                             ([*grid, "--conductance", "open_throat"], ["darcy_grid", "no conductance law"]),
+                             ([*grid, "--torques"], ["darcy_grid", "no torques"]),
+                             (["--drag", "di_felice"], ["pfv takes no drag", "darcy_grid"])):
+            with self.subTest(words=words):
+                result = self.run_pfv("solve", "--packing", DENSE, *UNIT_BOX, *THROUGH_FLOW, *words)
+                self.assert_refused(result, *parts)
+
+
+if __name__ == "__main__":
+    unittest.main()
