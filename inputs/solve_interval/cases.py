@@ -76,7 +76,7 @@ def settling(part):
 def two_sizes(part):
     sample = grains.two_sizes()
     weight = sum(1600.0 * 9.81 * 4 / 3 * np.pi * row[4]**3 for row in sample[0])
-    return Case("two_sizes", "settling", sample, int(4000 * part),
+    return Case("two_sizes", "settling", sample, int(2000 * part),
                 {"viscosity": 0.02, "LX": 0.0936, "LY": 0.0936, "LZ": 0.0936, "mass": 2e-4, "kn": 1e3, "dt": 4e-5,
                  "mu": 0.5}, {"height": span, "floor": weight}, "height, force on the floor")
 

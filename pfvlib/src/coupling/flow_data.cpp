@@ -2,6 +2,7 @@
 #include "coupling/flow_data.hpp"
 
 #include "coupling/phase_clock.hpp"
+#include "coupling/pore_strain.hpp"
 #include "pfv/error.hpp"
 
 #include <algorithm>
@@ -325,8 +326,8 @@ void FlowData::add_strain(double step) {
 }
 
 double FlowData::mean_strain(const Eigen::VectorXd& changes) const {
-  const Eigen::Map<const Eigen::ArrayXd> volumes(built->strain_volume.data(), changes.size());
-  return changes.cwiseAbs().sum() / volumes.sum();
+  return mean_pore_strain(built->network, built->conductances, relative_pressures, box.pressure_gradient,
+                          changes, built->strain_volume);
 }
 
 }  // namespace pfv

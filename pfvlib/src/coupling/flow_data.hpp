@@ -162,7 +162,7 @@ struct FlowData {
   void factor_implicit(const Matrix6Xd& yielding);
   void end_step(double step);
   void add_strain(double step);
-  /// Sum of |changes| over sum of volumes.
+  /// coupling/pore_strain.hpp
   double mean_strain(const Eigen::VectorXd& changes) const;
 
   Eigen::VectorXd displaced;    ///< m³, by the active spheres
