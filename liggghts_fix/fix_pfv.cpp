@@ -407,7 +407,8 @@ int FixPfv::modify_param(int narg, char** arg) {
   everywhere([&] { taken = modify_pfv(settings_, narg, arg); });
   on_root([&] {
     if (auto* pores = dynamic_cast<pfv::Flow*>(flow_.get()))
-      pores->set_retriangulation_strain(settings_.options.retriangulation_strain);
+      pores->set_retriangulation(settings_.options.strain_measure,
+                                 settings_.options.retriangulation_strain);
   });
   return taken;
 }

@@ -88,9 +88,11 @@ class FixPfv : public Fix {
   bool imposed_values_changed();
   double gross_motion() const;
   bool grains_jumped();
-  int most_steps();
+  int most_steps(int steps);
   double load_beside_fluid(double on_meshes) const;
   void begin_plan();
+  bool take_up_new_network(int steps);
+  void update_sensitivity(double motion);
   void plan_next_solve(int steps);
   double steps_of_trend() const;
 
@@ -133,7 +135,9 @@ class FixPfv : public Fix {
   struct Plan {
     int steps = 1;        // from the last solve to the next
     double offset = 0.0;  // from the instant that its loads belong to until the last solve, steps
-    double share_of_fluid = 0.0;
+    double sensitivity = 0.0;   // of the loads to the grains' motion, over the load
+    bool solved = false;        // within this run
+    double strain = 0.0;        // after the last solve; rank 0
     double gross_motion = 0.0;  // at the last solve
     double limit = -1.0;        // of the explicit coupling, s; negative: not known; rank 0
     std::int64_t networks = 0;  // when it was asked for

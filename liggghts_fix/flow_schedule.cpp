@@ -54,25 +54,43 @@ double FixPfv::gross_motion() const {
 }
 
 /// Whether the grains move so much faster or slower than at the last solve that the interval, which was made
-/// from what had happened before, cannot have foreseen it.
+/// from what had happened before, cannot have foreseen it: by what the loads have changed with the motion lately.
 bool FixPfv::grains_jumped() {
   constexpr double foreseen = 10.0;  // tolerances
   if (steps_since_flow_ < 2) return false;
   const double change = std::abs(gross_motion() - plan_.gross_motion);
-  return change * plan_.share_of_fluid > foreseen * settings_.steps.couple_error.value() * plan_.gross_motion;
+  return change * plan_.sensitivity > foreseen * settings_.steps.couple_error.value() * plan_.gross_motion;
 }
 
-/// Steps over which loads can be held at most: well within the limit of the explicit coupling, and one with a
-/// compressible fluid, whose held pressure drives grains and pistons like a spring with negative damping.
-int FixPfv::most_steps() {
-  constexpr double part_of_limit = 0.4;
-  constexpr std::int64_t networks_for_a_limit = 20;
+/// Updates how much the loads change, over the load, when the motion of the grains changes by all of itself: as
+/// much as the fluid's loads are at most, and at first; it fades as long as changes of the motion have led to
+/// smaller ones of the loads, as in a steady flow through grains that creep. Rank 0.
+void FixPfv::update_sensitivity(double motion) {
+  constexpr double fading = 0.9;
+  const double share = interval_->share_of_fluid(), before = plan_.gross_motion;
+  plan_.gross_motion = motion;
+  const double change = std::abs(motion - before);
+  const bool seen = plan_.solved && change > settings_.steps.couple_error.value() * before;
+  plan_.sensitivity = !plan_.solved ? share
+                      : std::min(share, std::max(fading * plan_.sensitivity,
+                                                 seen ? interval_->change() * before / change : 0.0));
+  plan_.solved = true;
+}
+
+/// Steps over which loads can be held at most: within the limit of the explicit coupling, until the strain asks
+/// for a new network if it goes on as in the `steps` since the last solve, and one with a compressible fluid,
+/// whose held pressure drives grains and pistons like a spring with negative damping.
+int FixPfv::most_steps(int steps) {
+  constexpr double part_of_limit = 0.7;
+  constexpr std::int64_t networks_for_a_limit = 4;
   if (settings_.fluid.bulk_modulus) return 1;
   if (plan_.limit < 0.0 || flow_->retriangulations() - plan_.networks >= networks_for_a_limit) {
     plan_.limit = time_step_limit();
     plan_.networks = flow_->retriangulations();
   }
-  const double most = part_of_limit * plan_.limit / update->dt;
+  const double strain = std::abs(flow_->strain() - plan_.strain);
+  double most = part_of_limit * plan_.limit / update->dt;
+  if (strain > 0.0) most = std::min(most, settings_.options.retriangulation_strain / strain * steps);
   return static_cast<int>(std::clamp(most, 1.0, 1e6));
 }
 
@@ -90,11 +108,22 @@ double FixPfv::load_beside_fluid(double on_meshes) const {
   return std::max(on_meshes, weight);
 }
 
+/// Where this solve has brought the strain to its limit, the network is built anew at once and the loads are
+/// those on the new one, not at the next solve: the difference between two solves then is the change in time
+/// alone, and the network is not an interval older than was asked for. It costs one solve more. Rank 0.
+bool FixPfv::take_up_new_network(int steps) {
+  if (settings_.fluid.bulk_modulus ||
+      flow_->strain() < settings_.options.retriangulation_strain)
+    return false;
+  flow_->evaluate(grains_.packing(), steps * update->dt);
+  return true;
+}
+
 /// Decides on the next solve from the loads of this one, `steps` after the last; collective.
 void FixPfv::plan_next_solve(int steps) {
-  plan_.gross_motion = gross_motion();
   const double on_meshes = faces_.largest_load();
-  double told[4] = {1.0, 0.0, 0.0, 0.0};
+  const double motion = gross_motion();
+  double told[3] = {1.0, 0.0, 0.0};
   on_root([&] {
     const auto radii = grains_.packing().radii;
     if (radii.size() == 0) return;
@@ -104,15 +133,22 @@ void FixPfv::plan_next_solve(int steps) {
     const bool new_network = flow_->retriangulations() != plan_.last_network;
     plan_.last_network = flow_->retriangulations();
     interval_->take(grains_.packing().ids, flow_->forces(), flow_->face_forces(), steps,
-                    load_beside_fluid(on_meshes), area, section, most_steps(), new_network);
+                    load_beside_fluid(on_meshes), area, section, most_steps(steps), new_network);
+    if (take_up_new_network(steps)) {
+      plan_.last_network = flow_->retriangulations();
+      interval_->put_on_network(flow_->forces(), flow_->face_forces());
+    }
+    plan_.strain = flow_->strain();
+    update_sensitivity(motion);
     told[0] = interval_->steps();
     told[1] = interval_->held().offset;
-    told[2] = interval_->share_of_fluid();
+    told[2] = plan_.sensitivity;
   });
-  MPI_Bcast(told, 4, MPI_DOUBLE, 0, world);
+  MPI_Bcast(told, 3, MPI_DOUBLE, 0, world);
+  plan_.gross_motion = motion;
   plan_.steps = static_cast<int>(told[0]);
   plan_.offset = told[1];
-  plan_.share_of_fluid = told[2];
+  plan_.sensitivity = told[2];
 }
 
 /// At the setup of a run, with the loads of its evaluation; collective. What an earlier run saw is forgotten, as

@@ -84,7 +84,9 @@ TEST(FlowReuse, MovingGrainsCostOneVolumeRateAStepAndNoNewFactor) {
 TEST(FlowReuse, StrainIsTheLargestRelativeVolumeRateTimesTheStep) {
   const Piston piston;
   const double rate = piston.strain_rate();
-  pfv::Flow flow(piston.box, viscosity_one());
+  pfv::Options options;
+  options.strain_measure = pfv::StrainMeasure::largest;
+  pfv::Flow flow(piston.box, viscosity_one(), options);
   flow.step(piston.packing.view(), dt);
   EXPECT_NEAR(flow.strain() / (rate * dt), 1.0, 1e-12);
   flow.step(piston.packing.view(), 2.0 * dt);
@@ -95,6 +97,7 @@ TEST(FlowReuse, TriangulatesAnewAtTheStepAfterTheStrainReachesTheThreshold) {
   const Piston piston;
   const double each = piston.strain_rate() * dt;
   pfv::Options options;
+  options.strain_measure = pfv::StrainMeasure::largest;
   options.retriangulation_strain = 2.5 * each;  // reached by the third step
   pfv::Flow flow(piston.box, viscosity_one(), options);
   for (int i = 0; i < 3; ++i) flow.step(piston.packing.view(), dt);
@@ -240,6 +243,7 @@ TEST(FlowReuse, ResultsAreTheSameBytesEveryTime) {
   const auto run = [&] {
     pfv::PackingArrays packing = piston.packing;
     pfv::Options options;
+    options.strain_measure = pfv::StrainMeasure::largest;
     options.retriangulation_strain = 3.0 * dt * piston.strain_rate();
     pfv::Flow flow(piston.box, viscosity_one(), options);
     std::vector<double> bytes;

@@ -30,6 +30,7 @@ struct Stretched {
   static pfv::Options options(double strain) {
     pfv::Options options;
     options.retriangulation_strain = strain;
+    options.strain_measure = pfv::StrainMeasure::largest;
     return options;
   }
   void run(int steps, const std::function<Eigen::Vector3d(double)>& at) {

@@ -52,6 +52,7 @@ struct Column {
 Options lagging(int steps = lag) {
   Options options;
   options.rebuild_lag = steps;
+  options.strain_measure = StrainMeasure::largest;
   options.sphere_pressure = true;
   return options;
 }

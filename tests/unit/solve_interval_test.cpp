@@ -17,7 +17,7 @@ struct Host {
   pfv::Packing::Ids ids = pfv::Packing::Ids::LinSpaced(2, 1, 2);
   std::function<double(double)> load;
   int most = any, solves = 0;
-  double worst = 0.0;
+  double last = 0.0;  // step of the last solve
 
   explicit Host(std::function<double(double)> f) : load(std::move(f)) {}
 
@@ -40,7 +40,7 @@ struct Host {
       ++since;
       if (since < interval.steps()) continue;
       take(load(solved_at + 0.5 * since), since);
-      solved_at = step;
+      last = solved_at = step;
       since = 0;
     }
   }
@@ -95,6 +95,40 @@ TEST(SolveInterval, ANewNetworkIsNoChangeInTime) {
   EXPECT_EQ(host.interval.steps(), before);
   EXPECT_EQ(host.interval.largest_error(), 0.0);
   EXPECT_EQ(host.interval.held().slope.norm(), 0.0);
+}
+
+TEST(SolveInterval, LoadsOfAnotherNetworkAreHeldAndLeaveWhatIsKnownOfTime) {
+  Host growing([](double t) { return 0.1 + 1e-4 * t; });
+  growing.run(4000);
+  const int before = growing.interval.steps();
+  // the next solve, then the same instant on a network that makes all loads a fifth larger
+  const double jump = 0.1;
+  double now = growing.last + 0.5 * before;
+  growing.take(growing.load(now), before);
+  pfv::Forces forces;
+  forces.total = forces.torque = Eigen::Matrix3Xd::Constant(3, 2, growing.load(now) + jump);
+  std::array<Eigen::Vector3d, 6> faces;
+  faces.fill(Eigen::Vector3d::Zero());
+  faces[5] = Eigen::Vector3d(0.0, 0.0, growing.load(now) + jump);
+  growing.interval.put_on_network(forces, faces);
+  EXPECT_NEAR(growing.interval.held().slope(0, 0), 1e-4, 1e-12);
+  const int steps = growing.interval.steps();
+  now += 0.5 * (before + steps);
+  growing.take(growing.load(now) + jump, steps);
+  EXPECT_LT(growing.interval.error(), 1e-12);
+  // over the load on the grains, which is the one that errs most here
+  EXPECT_NEAR(growing.interval.change() * (growing.load(now) + jump), 1e-4 * 0.5 * (before + steps), 1e-9);
+}
+
+TEST(SolveInterval, WhatGoesOnMayDoSoForHalfAsLongAsWhatIsHeld) {
+  Host growing([](double t) { return 0.1 + 1e-4 * t; });
+  growing.most = 40;
+  growing.run(2000);
+  EXPECT_EQ(growing.interval.steps(), 20);
+  Host still([](double) { return 0.5; });
+  still.most = 40;
+  still.run(2000);
+  EXPECT_EQ(still.interval.steps(), 40);
 }
 
 TEST(SolveInterval, AJumpAndOtherGrainsAreSolvedForOftenAgain) {

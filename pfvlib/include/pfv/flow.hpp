@@ -52,7 +52,8 @@ class Flow final : public FlowModel {
   const Box& box() const override;
   const Fluid& fluid() const override;
   const Options& options() const;
-  void set_retriangulation_strain(double strain);
+  /// Another measure begins with a new network.
+  void set_retriangulation(StrainMeasure measure, double strain);
 
   double time() const override;
   double strain() const override;

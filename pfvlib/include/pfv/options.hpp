@@ -114,8 +114,9 @@ struct Names<OutsideGrains> {
 };
 
 /// The strain that leads to a new network. `largest`: the sum over the steps of the largest |dV/dt| dt / V
-/// of all pores (thesis eqs. 5.13-5.14). `mean`: sum of |V - V_0| over sum of V_0, V_0 the pores' volumes
-/// when the network was built: one pore does not count for all, nor does what is undone.
+/// of all pores (thesis eqs. 5.13-5.14). `mean`: |V - V_0| / V_0, V_0 the pores' volumes when the network was built,
+/// as the larger of its mean weighted with V_0 and that weighted with the power that the fluid loses in the throats
+/// of each pore: one pore does not count for all unless the flow hangs on it, nor does what is undone.
 enum class StrainMeasure { largest, mean };
 template <>
 struct Names<StrainMeasure> {
@@ -145,7 +146,7 @@ struct Options {
   OutsideGrains outside = OutsideGrains::refuse;
   /// Accumulated pore strain at which `Flow::step` triangulates anew, > 0.
   double retriangulation_strain = 0.01;
-  StrainMeasure strain_measure = StrainMeasure::largest;
+  StrainMeasure strain_measure = StrainMeasure::mean;
   /// K > 0: when that strain is reached, another thread builds the next network from the grains as
   /// they are, while the steps go on with the old one; the K-th step after takes it up, and waits
   /// where it must. Same bytes in every run. 0: the step itself builds it. Explicit and staged

@@ -34,15 +34,21 @@ class SolveInterval {
 
   /// Takes in the loads of a solve after `steps` steps. `face_load` (N): the largest load on a face beside the
   /// fluid's; `face_area` (m²): the largest; `section` (m²): mean cross-section of the grains; `most`:
-  /// steps that may be held at most, >= 1. `ids`: of the grains; another set begins anew. `new_network`: the
-  /// first solve on it, whose loads differ from the last by no change in time: the interval stays.
+  /// steps that loads may be held at most, >= 1, half as many if they go on: a trend turns a delay into growth
+  /// sooner. `ids`: of the grains; another set begins anew. `new_network`: the first solve on it, whose loads
+  /// differ from the last by no change in time alone: the interval stays.
   void take(const Packing::Ids& ids, const Forces& forces,
             const std::array<Eigen::Vector3d, 6>& faces, int steps, double face_load,
             double face_area, double section, int most, bool new_network = false);
 
+  /// The loads of the same instant on another network, right after `take`: from here on they are held, and
+  /// what the last solve said of the change in time stays.
+  void put_on_network(const Forces& forces, const std::array<Eigen::Vector3d, 6>& faces);
+
   int steps() const { return steps_; }       ///< from the last solve to the next
   const HeldLoads& held() const { return held_; }
   double error() const { return error_; }    ///< of the last solve, over the load
+  double change() const { return change_; }  ///< of the loads since the solve before it, in the same way
   double largest_error() const { return largest_error_; }  ///< since the first `restart`
   /// The part of the loads that the fluid's can have in the scale of the errors, 0 to 1.
   double share_of_fluid() const { return share_; }
@@ -59,7 +65,7 @@ class SolveInterval {
   double tolerance_;
   bool known_ = false, trend_known_ = false, continues_ = false;
   int steps_ = 1, last_steps_ = 1;
-  double error_ = 0.0, largest_error_ = 0.0, share_ = 0.0;
+  double error_ = 0.0, largest_error_ = 0.0, change_ = 0.0, share_ = 0.0;
   Errors memory_{0.0, 0.0};  ///< of the errors over the steps, or their square: it fades
   Packing::Ids ids_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> last_, trend_;  ///< loads, and their change a step

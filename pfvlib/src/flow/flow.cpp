@@ -46,7 +46,7 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
   };
   BuiltNetwork& built =
       keeper.update(packing, problem(),
-                    {dt, commit, solution.moving, memory.pressures.size() > 0}, work, taken_up);
+                    {dt, commit, memory.pressures.size() > 0, solution}, work, taken_up);
   if (factor_pressures(built, problem(), dt, work)) schemes.forget_factor();
   work.counts.pinned_pores = 0;
   for (const Isolated& isolated : built.kept.system.isolated)
@@ -84,7 +84,7 @@ const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
     solved = true;
     if (commit) {
       remember(memory, built, fluid, solution);
-      if (solution.moving) keeper.strain(solution.rates, dt);
+      if (solution.moving) keeper.strain(solution);
     }
   }
   work.wall_seconds.total += wall_seconds() - wall_start;
@@ -153,10 +153,12 @@ void Flow::set_box(const Box& box) {
   parts_->box = box;
 }
 
-void Flow::set_retriangulation_strain(double strain) {
+void Flow::set_retriangulation(StrainMeasure measure, double strain) {
   Options changed = parts_->options;
+  changed.strain_measure = measure;
   changed.retriangulation_strain = strain;
   check(changed);
+  if (measure != parts_->options.strain_measure) parts_->keeper.discard(false);
   parts_->options = changed;
 }
 

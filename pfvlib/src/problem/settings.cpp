@@ -170,16 +170,19 @@ Setting model() {
 
 Setting retriangulate() {
   Setting setting = number(row("Steps", "retriangulate",
-                               "accumulated pore strain at which the network is built anew; mean: that of all pores",
+                               "accumulated pore strain at which the network is built anew: the mean of all pores', or the largest (without a word, too)",
                                {false, true, true}, pores),
-                           "retriangulation strain", "[mean] STRAIN", "", demands::positive_or_infinite,
+                           "retriangulation strain", "[mean|largest] STRAIN", "", demands::positive_or_infinite,
                            option(&Options::retriangulation_strain));
   setting.read = [strain = setting.read](Settings& settings, Words& words) {
-    if (words.take("mean")) settings.options.strain_measure = StrainMeasure::mean;
+    // the papers' strain without a word
+    settings.options.strain_measure =
+        words.take("mean") ? StrainMeasure::mean : StrainMeasure::largest;
+    words.take("largest");
     strain(settings, words);
   };
   setting.text = [strain = setting.text](const Settings& settings) {
-    return (settings.options.strain_measure == StrainMeasure::mean ? "mean " : "") + strain(settings);
+    return name_of(settings.options.strain_measure) + (" " + strain(settings));
   };
   return setting;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/network_keeper.hpp"
 
+#include "physics/pore_strain.hpp"
 #include "work/phase_clock.hpp"
 
 #include <algorithm>
@@ -10,10 +11,10 @@ namespace pfv {
 
 namespace {
 
-/// Sum of |changes| over sum of volumes.
-double mean_strain(const BuiltNetwork& built, const Eigen::VectorXd& changes) {
-  const Eigen::Map<const Eigen::VectorXd> volumes(built.strain_volume.data(), changes.size());
-  return changes.cwiseAbs().sum() / volumes.sum();
+double mean_strain(const BuiltNetwork& built, const Solution& solution,
+                   const Eigen::VectorXd& changes) {
+  return mean_pore_strain(built.network, built.conductances, solution.relative_pressures,
+                          solution.box.pressure_gradient, changes, built.strain_volume);
 }
 
 }  // namespace
@@ -23,20 +24,23 @@ void PoreStrain::begin(StrainMeasure measure, int pores, double taken_over) {
   volume_changes_.setZero(measure == StrainMeasure::mean ? pores : 0);
 }
 
-void PoreStrain::add(const BuiltNetwork& built, const Eigen::VectorXd& rates, double step) {
+void PoreStrain::add(const BuiltNetwork& built, const Solution& solution) {
+  const Eigen::VectorXd& rates = solution.rates;
+  const double step = solution.dt;
   if (rates.size() == 0) return;
   if (volume_changes_.size() > 0) {
     volume_changes_ += step * rates;
-    value_ = taken_over_ + mean_strain(built, volume_changes_);
+    value_ = taken_over_ + mean_strain(built, solution, volume_changes_);
     return;
   }
   const Eigen::Map<const Eigen::ArrayXd> volumes(built.strain_volume.data(), rates.size());
   value_ += (rates.array().abs() / volumes).maxCoeff() * step;
 }
 
-double PoreStrain::since(const PoreStrain& then, const BuiltNetwork& built) const {
+double PoreStrain::since(const PoreStrain& then, const BuiltNetwork& built,
+                         const Solution& last) const {
   if (then.volume_changes_.size() > 0)
-    return mean_strain(built, volume_changes_ - then.volume_changes_);
+    return mean_strain(built, last, volume_changes_ - then.volume_changes_);
   return value_ - then.value_;
 }
 
@@ -49,7 +53,7 @@ BuiltNetwork& NetworkKeeper::update(const Packing& packing, const Problem& probl
     return *built_;
   }
   if (wanted.advance && next_ && --next_->steps == 0) {
-    take_up_next(problem, work, taken_up);
+    take_up_next(problem, wanted.last, work, taken_up);
     if (is_outdated(packing, problem)) {
       anew();
       return *built_;
@@ -59,7 +63,7 @@ BuiltNetwork& NetworkKeeper::update(const Packing& packing, const Problem& probl
   if (problem.options.rebuild_lag == 0)
     anew();
   else if (wanted.advance)
-    next_.emplace(Next{BackgroundRebuild(packing, problem, wanted.step, wanted.moving),
+    next_.emplace(Next{BackgroundRebuild(packing, problem, wanted.step, wanted.last.moving),
                        problem.options.rebuild_lag, strain_});
   return *built_;
 }
@@ -88,13 +92,13 @@ void NetworkKeeper::rebuild_now(const Packing& packing, const Problem& problem,
   stale_ = moved_by_host_ = false;
 }
 
-void NetworkKeeper::take_up_next(const Problem& problem, WorkRecord& work,
+void NetworkKeeper::take_up_next(const Problem& problem, const Solution& last, WorkRecord& work,
                                  const TakenUp& taken_up) {
   const double start = wall_seconds();
   std::unique_ptr<BuiltNetwork> fresh = next_->network.take(work);
   if (fresh->kept.solver) fresh->kept.solver->share_with(problem.team);
   work.wall_seconds.waited += wall_seconds() - start;
-  const double strain = strain_.since(next_->begun_at, *built_);
+  const double strain = strain_.since(next_->begun_at, *built_, last);
   next_.reset();
   former_grains_ = built_->grains.spheres;
   take_up(std::move(fresh), problem, strain, work, taken_up);

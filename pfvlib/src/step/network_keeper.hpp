@@ -4,6 +4,7 @@
 #include "step/background_rebuild.hpp"
 #include "step/built_network.hpp"
 #include "step/problem.hpp"
+#include "step/solution.hpp"
 #include "work/work_record.hpp"
 
 #include <cstdint>
@@ -21,10 +22,10 @@ class PoreStrain {
   void restore(double value) { value_ = value; }
   /// Begins anew for a network whose grains had strained by `taken_over` when it was taken up.
   void begin(StrainMeasure measure, int pores, double taken_over);
-  /// Adds a step's volume rates.
-  void add(const BuiltNetwork& built, const Eigen::VectorXd& rates, double step);
-  /// The strain since `then`, a former state of this.
-  double since(const PoreStrain& then, const BuiltNetwork& built) const;
+  /// Adds the volume rates of a step.
+  void add(const BuiltNetwork& built, const Solution& solution);
+  /// The strain since `then`, a former state of this, where fluid flows as in the last solution.
+  double since(const PoreStrain& then, const BuiltNetwork& built, const Solution& last) const;
 
  private:
   double value_ = 0.0, taken_over_ = 0.0;
@@ -50,8 +51,8 @@ class NetworkKeeper {
     double step;        ///< s
     bool advance;       ///< only an advancing step begins a network in the background or takes it up, so that
                         ///< when that happens depends on nothing but the steps
-    bool moving;        ///< volume rates are wanted
     bool keep_former;   ///< pressures will be carried over
+    const Solution& last;
   };
 
   /// The network of the grains as they are or, with rebuild_lag, as they were not long ago. Throws InputError,
@@ -62,7 +63,7 @@ class NetworkKeeper {
   /// The next update builds anew. `by_host`: since grains or faces have been put elsewhere.
   void discard(bool by_host);
   /// Takes in the strain of a step.
-  void strain(const Eigen::VectorXd& rates, double step) { strain_.add(*built_, rates, step); }
+  void strain(const Solution& solution) { strain_.add(*built_, solution); }
   void restore(double strain, std::int64_t rebuilds);
 
   BuiltNetwork& network() const { return *built_; }
@@ -82,7 +83,8 @@ class NetworkKeeper {
   bool is_outdated(const Packing& packing, const Problem& problem) const;
   void rebuild_now(const Packing& packing, const Problem& problem, const Wanted& wanted,
                    WorkRecord& work, const TakenUp& taken_up);
-  void take_up_next(const Problem& problem, WorkRecord& work, const TakenUp& taken_up);
+  void take_up_next(const Problem& problem, const Solution& last, WorkRecord& work,
+                    const TakenUp& taken_up);
   void take_up(std::unique_ptr<BuiltNetwork> fresh, const Problem& problem, double strain,
                WorkRecord& work, const TakenUp& taken_up);
 

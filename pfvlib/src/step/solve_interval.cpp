@@ -42,7 +42,7 @@ double ratio(double part, double whole) { return part > 0.0 ? part / whole : 0.0
 void SolveInterval::restart() {
   known_ = trend_known_ = continues_ = false;
   steps_ = last_steps_ = 1;
-  error_ = 0.0;
+  error_ = change_ = 0.0;
   memory_ = {0.0, 0.0};
   held_ = {};
 }
@@ -75,15 +75,18 @@ void SolveInterval::choose(Errors errors, int most) {
   if (trend_known_)
     memory_.continued = std::max(errors.continued / (now * now), fading * memory_.continued);
   const double unlimited = fastest_growth * now + 1.0;
-  const double if_held = memory_.held > 0.0 ? wanted / memory_.held : unlimited;
-  const double if_continued = !trend_known_               ? 0.0
-                              : memory_.continued > 0.0 ? std::sqrt(wanted / memory_.continued)
-                                                        : unlimited;
-  continues_ = if_continued > if_held && most > 2;
+  const double if_held =
+      std::min<double>(most, memory_.held > 0.0 ? wanted / memory_.held : unlimited);
+  const double if_continued =
+      !trend_known_ ? 0.0
+                    : std::min<double>(most / 2, memory_.continued > 0.0
+                                                     ? std::sqrt(wanted / memory_.continued)
+                                                     : unlimited);
+  continues_ = if_continued > if_held;
   const double bounded =
-      std::clamp(std::max(if_held, continues_ ? if_continued : 0.0), fastest_fall * now, unlimited);
-  steps_ = static_cast<int>(std::clamp(std::floor(bounded + 1e-9), 1.0,
-                                       static_cast<double>(std::min(most, longest))));
+      std::clamp(std::max(if_held, if_continued), fastest_fall * now, unlimited);
+  const int limit = std::min(continues_ ? most / 2 : most, longest);
+  steps_ = std::clamp(static_cast<int>(std::floor(bounded + 1e-9)), 1, std::max(limit, 1));
 }
 
 void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
@@ -104,6 +107,7 @@ void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
     const double apart = 0.5 * (steps + last_steps_);  // of the middles of this interval and the last
     const Errors errors = errors_of(forces, faces, face_scale, grain_scale, apart);
     error_ = continues_ ? errors.continued : errors.held;
+    change_ = errors.held;
     largest_error_ = std::max(largest_error_, error_);
     trend_ = (loads - last_) / apart;
     for (int f = 0; f < 6; ++f) face_trend_[f] = (faces[f] - last_faces_[f]) / apart;
@@ -120,6 +124,11 @@ void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
   last_ = std::move(loads);
   last_faces_ = faces;
   known_ = true;
+}
+
+void SolveInterval::put_on_network(const Forces& forces, const std::array<Eigen::Vector3d, 6>& faces) {
+  last_ = loads_of(forces);
+  last_faces_ = faces;
 }
 
 }  // namespace pfv
