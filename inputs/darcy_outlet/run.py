@@ -6,7 +6,6 @@
     run.py column [N=..]       the oedometer's sample with either model: column.py
 """
 import math
-import re
 import sys
 from pathlib import Path
 
@@ -20,8 +19,8 @@ KEYS = {
     "ACROSS": (int, 10, "grains across the box; 20 as in the example"),
     "TIME": (float, 1.0, "simulated time, s"),
     "EVERY": (int, 100, "steps between two looks at the porosity, darcy_grid"),
-    "RETRIANGULATE": (str, "mean 0.01", "'mean STRAIN' or largest pore strain, pfv"),
-    "COUPLE": (str, "auto", "time steps between two flow steps; auto: pfv's own choice, 10 with darcy_grid"),
+    "RETRIANGULATE": (str, "0.05", "pore strain, or 'mean STRAIN', pfv"),
+    "COUPLE": (int, 10, "time steps between two flow steps"),
     "DRAG": (str, "di_felice", "di_felice or kozeny_carman, darcy_grid"),
     "FLUX": (float, 1e-5, "inflow, m3/s"),
     "VISCOSITY": (float, 1e-3, "Pa s"),
@@ -34,10 +33,10 @@ def settings_of(words):
     settings = scene.parse(words, KEYS)
     if settings["MODEL"] not in ("pfv", "darcy_grid", "both"):
         raise scene.BadSetting("MODEL must be pfv, darcy_grid or both")
-    if settings["ACROSS"] < 4 or settings["TIME"] <= 0 or settings["EVERY"] < 1:
-        raise scene.BadSetting("ACROSS must be at least 4, TIME above 0, EVERY at least 1")
-    if settings["COUPLE"] != "auto" and not re.fullmatch("[1-9][0-9]*", settings["COUPLE"]):
-        raise scene.BadSetting("COUPLE must be auto or a number of steps")
+    if settings["ACROSS"] < 4 or settings["TIME"] <= 0 or min(settings["EVERY"],
+                                                                  settings["COUPLE"]) < 1:
+        raise scene.BadSetting("ACROSS must be at least 4, TIME above 0, EVERY and COUPLE at "
+                               "least 1")
     return settings
 
 
@@ -51,13 +50,11 @@ def run_model(model, settings):
     """One run; returns what it says of itself."""
     # the law that the figures of README.md were measured with
     words = f"pfv conductance hydraulic_radius retriangulate {settings['RETRIANGULATE']}"
-    couple = settings["COUPLE"]
     if model == "darcy_grid":
-        couple = 10 if couple == "auto" else int(couple)  # each step would be solved
         cells = " ".join(map(str, CELLS))
-        looks = max(1, settings["EVERY"] // couple)  # of fix pfv: in flow steps
+        looks = max(1, settings["EVERY"] // settings["COUPLE"])  # of fix pfv: in flow steps
         words = f"darcy_grid {cells} every {looks} drag {settings['DRAG']}"
-    words += f" couple_every {couple}"
+    words += f" couple_every {settings['COUPLE']}"
     step = time_step(settings["ACROSS"])
     steps = 100 * max(1, round(settings["TIME"] / step / 100))
     out = f"{settings['OUT']}_{model}"

@@ -28,7 +28,7 @@ KEYS = {
     "END": (float, 2.6, "duration of the loading, T_v"),
     "RETRIANGULATE": (float, 0.01, "pore strain"),
     "FIELDS": (int, 0, "instants of the consolidation written for ParaView; 0: none"),
-    "FIX": (str, "couple_every 1", "more keywords of fix pfv, in quotes"),
+    "FIX": (str, "couple_every auto", "more keywords of fix pfv, in quotes"),
     "OUT": scene.OUT,
     "KEEP": (int, 0, "1: take the sample, dry test and permeability that OUT holds"),
 }
