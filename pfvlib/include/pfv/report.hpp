@@ -149,6 +149,7 @@ void for_each_entry(const Report& report, const See& see) {
   see("residual", report.residual);
   see("solver", report.solver);
   see("ordering", report.ordering);
+  see("solver_made_of", report.solver_made_of);
   see("conductance", report.conductance);
   see("faces", report.faces);
   see("openings", report.openings);

@@ -2,8 +2,8 @@
 #include "network/grains.hpp"
 
 #include "geometry/pi.hpp"
-#include "pfv/error.hpp"
 #include "text/number_text.hpp"
+#include "pfv/error.hpp"
 
 #include <algorithm>
 #include <cmath>

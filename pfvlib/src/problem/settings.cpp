@@ -170,7 +170,8 @@ Setting model() {
 
 Setting retriangulate() {
   Setting setting = number(row("Steps", "retriangulate",
-                               "accumulated pore strain at which the network is built anew: the mean of all pores', or the largest (without a word, too)",
+                               "accumulated pore strain at which the network is built anew: the mean of all pores', or "
+                               "the largest (without a word, too)",
                                {false, true, true}, pores),
                            "retriangulation strain", "[mean|largest] STRAIN", "", demands::positive_or_infinite,
                            option(&Options::retriangulation_strain));
