@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "face_arguments.hpp"
 
-#include "text/number_text.hpp"
-#include "text/text_lines.hpp"
 #include "pfv/error.hpp"
 #include "pfv/words.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
 
 #include <array>
 #include <optional>

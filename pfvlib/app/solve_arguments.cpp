@@ -3,10 +3,10 @@
 
 #include "face_arguments.hpp"
 #include "io/atomic_file.hpp"
-#include "text/number_text.hpp"
-#include "text/text_lines.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -3,12 +3,12 @@
 
 #include "face_arguments.hpp"
 #include "io/atomic_file.hpp"
-#include "text/number_text.hpp"
-#include "text/text_lines.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
 #include "pfv/time_step.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
 
 #include <algorithm>
 #include <cmath>

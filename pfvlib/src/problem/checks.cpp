@@ -34,13 +34,13 @@ bool may_be_implicit(const Settings& s) {
 
 struct Rule {
   bool (*broken)(const Settings&);
-  const char* message;  ///< {solver}: the name of the one that is used
+  const char* message;  ///< {solver}: the name of the one that is used; {background}: those that would do
 };
 
 // Broken by what was said: the message says which of the two to change.
 const Rule rules[]{
     {[](const Settings& s) { return s.options.rebuild_lag > 0 && !traits_of(s.options.solver).background; },
-     "the solver {solver} does not factor in the background: use the solver cholmod, or set rebuild_lag to 0"},
+     "the solver {solver} does not factor in the background: use the solver {background}, or set rebuild_lag to 0"},
     {[](const Settings& s) {
        return s.options.rebuild_lag > 0 && s.options.ordering == OrderingKind::metis;
      },
@@ -97,10 +97,12 @@ const Rule rules[]{
      "darcy_grid has too many cells: give fewer"},
 };
 
-std::string with_solver(std::string message, const Settings& settings) {
-  const std::string blank = "{solver}";
-  if (const std::size_t at = message.find(blank); at != std::string::npos)
-    message.replace(at, blank.size(), name_of(resolved(settings.options.solver)));
+std::string filled_in(std::string message, const Settings& settings) {
+  const auto fill = [&message](const std::string& blank, const std::string& text) {
+    if (const std::size_t at = message.find(blank); at != std::string::npos) message.replace(at, blank.size(), text);
+  };
+  fill("{solver}", name_of(resolved(settings.options.solver)));
+  fill("{background}", solvers_with(&SolverTraits::background));
   return message;
 }
 
@@ -139,7 +141,7 @@ void check(const Settings& settings) {
   check(settings.options.solver, settings.options.ordering);
   check_readers(settings);
   for (const Rule& rule : rules)
-    if (rule.broken(settings)) throw InputError(with_solver(rule.message, settings));
+    if (rule.broken(settings)) throw InputError(filled_in(rule.message, settings));
 }
 
 void check(const Fluid& fluid) {

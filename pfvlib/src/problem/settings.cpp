@@ -219,13 +219,17 @@ Setting couple_every() {
 
 // -------------------------------------------------------------------------------------- the table
 
-constexpr Hosts command{true}, fix{false, true}, both{true, true}, modify_alone{false, false, true},
-    both_and_modify{true, true, true}, in_model{false, false, false, true}, command_and_in_model{true, false, false, true};
+//                 command fix modify of_grid
+constexpr Hosts command{true, false, false, false}, fix{false, true, false, false},
+    both{true, true, false, false}, both_and_modify{true, true, true, false},
+    modify_alone{false, false, true, false}, in_model{false, false, false, true},
+    command_and_in_model{true, false, false, true};
 
 std::vector<Setting> of_fluid() {
   return {
-      number(row("Fluid", "viscosity", "dynamic viscosity of the fluid; always to be given in the fix", both_and_modify, any_model), "viscosity",
-             "MU", "Pa s", demands::positive, fluid(&Fluid::viscosity)),
+      number(row("Fluid", "viscosity", "dynamic viscosity of the fluid; always to be given in the fix",
+                 both_and_modify, any_model),
+             "viscosity", "MU", "Pa s", demands::positive, fluid(&Fluid::viscosity)),
       number(row("Fluid", "density", "density of the fluid, used with gravity only", both, any_model), "density",
              "RHO", "kg/m3", demands::not_negative, fluid(&Fluid::density)),
       number(row("Fluid", "gravity", "gravity; adds buoyancy to the forces", command, any_model), "gravity",
@@ -240,7 +244,9 @@ std::vector<Setting> of_fluid() {
 std::vector<Setting> of_method() {
   return {
       model(),
-      number(row("Method", "cells", "cells along x, y and z, always to be given; in the fix behind the name of the model", command, grid),
+      number(row("Method", "cells",
+                 "cells along x, y and z, always to be given; in the fix behind the name of the model", command,
+                 grid),
              "cells", "NX NY NZ", "", demands::count, darcy(&DarcyOptions::cells)),
       number(row("Method", "every", "look at the porosity every this many flow steps", in_model, grid),
              "number of flow steps between two looks at the porosity", "N", "", demands::count,
@@ -249,8 +255,8 @@ std::vector<Setting> of_method() {
              darcy(&DarcyOptions::drag)),
       yes_or_no(row("Method", "grain_motion", "grains carry the fluid with them and displace it", in_model, grid),
                 "motion of grains", darcy(&DarcyOptions::grain_motion)),
-      choice(row("Method", "partition", "geometry of a throat: signed volumes, or YADE's rules to reproduce its results",
-                 command, pores),
+      choice(row("Method", "partition",
+                 "geometry of a throat: signed volumes, or YADE's rules to reproduce its results", command, pores),
              "partition of throats", option(&Options::partition)),
       choice(row("Method", "conductance", "conductance law of a throat (with partition yade: hydraulic_radius)", both,
                  pores),
