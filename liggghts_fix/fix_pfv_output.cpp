@@ -80,6 +80,7 @@ void FixPfv::print_phases() {
   std::snprintf(line, sizeof line, "residual %.3g  mass error %.3g  force balance error %.3g\n",
                 done.residual, done.mass_error, done.force_balance_error);
   text += line;
+  text += "solver " + done.solver + ": " + done.solver_made_of + "\n";
   if (interval_) {
     std::snprintf(line, sizeof line,
                   "couple_every auto: solved at %lld of %lld steps, estimated error %.2g %% of the load\n",

@@ -306,7 +306,7 @@ void add_bench_options(CLI::App& command, BenchArguments& arguments) {
   arguments.precision = name_of(defaults.precision);
   command.add_option("--conductance", arguments.conductance, "conductance law")
       ->capture_default_str();
-  command.add_option("--precision", arguments.precision, "how cholmod keeps its factor")
+  command.add_option("--precision", arguments.precision, "how supernodal keeps its factor")
       ->capture_default_str();
   command.add_option("--threads", arguments.threads, "threads that share a rebuild or step")
       ->capture_default_str();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "selftest_command.hpp"
 
+#include "geometry/pi.hpp"
 #include "pfv/pfv.hpp"
 
 #include <cmath>
@@ -13,8 +14,6 @@
 
 namespace pfv::app {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 struct Check {
   std::string what;

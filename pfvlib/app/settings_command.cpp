@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "settings_command.hpp"
 
-#include "problem/solver_traits.hpp"
+#include "problem/solver_abilities.hpp"
 #include "solve_arguments.hpp"
 
 #include <ostream>

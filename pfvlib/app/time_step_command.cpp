@@ -2,6 +2,7 @@
 #include "time_step_command.hpp"
 
 #include "face_arguments.hpp"
+#include "geometry/pi.hpp"
 #include "io/atomic_file.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
@@ -22,7 +23,6 @@
 namespace pfv::app {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// The sphere that is worst off.

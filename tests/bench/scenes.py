@@ -83,7 +83,7 @@ def main():
     number, special = libraries(BUILD / "bin/pfv")
     text += (f"\n`pfv` links {number} shared libraries, among them of VTK, MUMPS, LIGGGHTS and MPI: "
              f"{', '.join(special) or 'none'}"
-             " (what Debian's Amesos2 itself depends on).\n")
+             " (the solver mumps, and what Debian's Amesos2 itself depends on).\n")
     document = ROOT / "doc/benchmarks.md"
     before, _, after = document.read_text().partition(HEADING)
     rest = after.find("\n## ")

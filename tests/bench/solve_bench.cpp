@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CPU time of each stage of the linear solver, for each solver and ordering, on dense packings:
-//   pfv_solve_bench
-// `solve` of cholmod is held against what memory allows: counters `bandwidth_GB_s`, measured just
-// before, `bound_ms`, the time to read the factor (doubles) twice at that bandwidth, and
-// `over_bound`.
+// Every linear solver on the same matrices, those of dense packings: a network's order and factor, and
+// solves, on one thread. tests/bench/solver_tables.py solvers makes the table of doc/solvers.md from it:
+//   pfv_solve_bench --benchmark_repetitions=3 --benchmark_enable_random_interleaving=true
+// Counters, milliseconds of CPU: `order`, `factor`, `solve`, and `hundred`, order + factor + 100 solves.
+// `memory_MB` is what the solver holds after a solve. `bound`, of supernodal: the time to read the factor
+// (doubles) twice at `bandwidth_GB_s`, which is measured just before.
 #include "pfv/pfv.hpp"
-#include "solve/cholmod_factor.hpp"
-#include "solve/ordering.hpp"
+#include "solve/fill_reducing_ordering.hpp"
+#include "solve/linear_solver.hpp"
+#include "problem/solver_abilities.hpp"
+#include "sparse/cholesky.hpp"
 #include "pfv/dense_packing.hpp"
 #include "support/stages.hpp"
 
 #include <algorithm>
 #include <benchmark/benchmark.h>
 #include <ctime>
+#include <malloc.h>
 #include <map>
 #include <numeric>
 
@@ -89,80 +93,90 @@ struct Choice {
   OrderingKind ordering;
 };
 
-void order(benchmark::State& state, const Choice& choice) {
-  const System& system = system_of(static_cast<int>(state.range(0)));
-  for (auto _ : state) {
-    make_solver(choice.solver, choice.ordering)->order(system.matrix, system.places);
-  }
-  state.counters["unknowns"] = system.matrix.size();
-}
-
-void factor(benchmark::State& state, const Choice& choice) {
-  const System& system = system_of(static_cast<int>(state.range(0)));
-  const auto solver = make_solver(choice.solver, choice.ordering);
-  solver->order(system.matrix, system.places);
-  for (auto _ : state) solver->factor(system.matrix);
-}
-
 /// Entries of L, with the zeros that merged supernodes take in.
 double factor_entries(const System& system, OrderingKind ordering) {
   const SymmetricMatrix& matrix = system.matrix;
-  CholmodFactor factor;
+  SparseCholesky factor;
   factor.analyze({matrix.size(), matrix.row_begin.data(), matrix.column.data(), nullptr},
                  fill_reducing_ordering(ordering, matrix, system.places));
   return static_cast<double>(factor.entries());
 }
 
-void solve(benchmark::State& state, const Choice& choice) {
-  const System& system = system_of(static_cast<int>(state.range(0)));
-  const auto solver = make_solver(choice.solver, choice.ordering);
-  solver->order(system.matrix, system.places);
-  solver->factor(system.matrix);
-  const Eigen::VectorXd b = Eigen::VectorXd::Ones(system.matrix.size());
-  Eigen::VectorXd x;
-  const bool is_cholmod = choice.solver == SolverKind::cholmod;
-  const double bytes = is_cholmod ? 8.0 * factor_entries(system, choice.ordering) : 0.0;
-  const double bandwidth = is_cholmod ? read_bandwidth(static_cast<std::size_t>(bytes)) : 0.0;
-  solver->solve(b, x);
+/// CPU milliseconds of an action.
+template <class Action>
+double milliseconds(const Action& action) {
   const double start = cpu_seconds();
-  for (auto _ : state) solver->solve(b, x);
-  const double seconds = (cpu_seconds() - start) / static_cast<double>(state.iterations());
-  state.counters["residual"] = (multiply(system.matrix, x) - b).norm() / b.norm();
-  if (!is_cholmod) return;
-  const double bound = 2.0 * bytes / bandwidth;
+  action();
+  return 1e3 * (cpu_seconds() - start);
+}
+
+double allocated_bytes() {
+  const auto heap = mallinfo2();
+  return static_cast<double>(heap.uordblks + heap.hblkhd);
+}
+
+void count_bound(benchmark::State& state, const System& system, OrderingKind ordering) {
+  const double bytes = 8.0 * factor_entries(system, ordering);
+  const double bandwidth = read_bandwidth(static_cast<std::size_t>(bytes));
   state.counters["entries_M"] = bytes / 8e6;
   state.counters["bandwidth_GB_s"] = bandwidth / 1e9;
-  state.counters["bound_ms"] = 1e3 * bound;
-  state.counters["over_bound"] = seconds / bound;
+  state.counters["bound"] = 2e3 * bytes / bandwidth;
+}
+
+/// A rebuild and some solves with the solver of an earlier network, as in a run.
+void rebuild(benchmark::State& state, const Choice& choice) {
+  const System& system = system_of(static_cast<int>(state.range(0)));
+  const Eigen::VectorXd b = Eigen::VectorXd::Ones(system.matrix.size());
+  const int solves = is_iterative(choice.solver) ? 1 : 20;
+  const double before = allocated_bytes();
+  const auto solver = make_solver(choice.solver, choice.ordering);
+  Eigen::VectorXd x;
+  solver->order(system.matrix, system.places);
+  solver->factor(system.matrix);
+  solver->solve(b, x);
+  state.counters["memory_MB"] = 1e-6 * (allocated_bytes() - before);
+  double order = 0.0, factor = 0.0, solve = 0.0;
+  for (auto _ : state) {
+    order += milliseconds([&] { solver->order(system.matrix, system.places); });
+    factor += milliseconds([&] { solver->factor(system.matrix); });
+    if (is_iterative(choice.solver)) x.setZero();
+    solve += milliseconds([&] {
+      for (int k = 0; k < solves; ++k) solver->solve(b, x);
+    }) / solves;
+  }
+  const auto mean = [&](double sum) { return sum / static_cast<double>(state.iterations()); };
+  state.counters["order"] = mean(order);
+  state.counters["factor"] = mean(factor);
+  state.counters["solve"] = mean(solve);
+  state.counters["hundred"] = mean(order + factor + 100.0 * solve);
+  state.counters["unknowns"] = system.matrix.size();
+  state.counters["residual"] = (multiply(system.matrix, x) - b).norm() / b.norm();
+  if (choice.solver == SolverKind::supernodal) count_bound(state, system, choice.ordering);
 }
 
 void add(const Choice& choice, int largest) {
-  const auto name = [&](const char* stage) {
-    return std::string(stage) + "/" + name_of(choice.solver) + "/" + name_of(choice.ordering);
-  };
-  const auto sizes = [&](benchmark::internal::Benchmark* bench) {
-    for (const int spheres : {1000, 5000, 20000}) {
-      if (spheres <= largest) bench->Arg(spheres);
-    }
-    bench->Unit(benchmark::kMillisecond);
-  };
-  sizes(benchmark::RegisterBenchmark(name("order").c_str(), order, choice));
-  sizes(benchmark::RegisterBenchmark(name("factor").c_str(), factor, choice));
-  sizes(benchmark::RegisterBenchmark(name("solve").c_str(), solve, choice));
+  const std::string name = std::string(name_of(choice.solver)) + "/" +
+                           name_of(resolved(choice.solver, choice.ordering));
+  for (const int spheres : {1000, 5000, 20000})
+    if (spheres <= largest)
+      benchmark::RegisterBenchmark(name.c_str(), rebuild, choice)
+          ->Arg(spheres)
+          ->Iterations(std::max(1, 5000 / spheres))
+          ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  add({SolverKind::cholmod, OrderingKind::geometric}, 20000);
-  add({SolverKind::cholmod, OrderingKind::metis}, 20000);
-  add({SolverKind::cholmod, OrderingKind::amd}, 20000);
-#ifdef PFV_WITH_MUMPS
-  add({SolverKind::mumps, OrderingKind::automatic}, 20000);
-#endif
-  add({SolverKind::klu2, OrderingKind::automatic}, 5000);
+  for (const SolverKind solver : {SolverKind::supernodal, SolverKind::cholmod, SolverKind::tacho})
+    for (const OrderingKind ordering :
+         {OrderingKind::geometric, OrderingKind::metis, OrderingKind::amd})
+      add({solver, ordering}, 20000);
+  if (abilities_of(SolverKind::mumps).is_built)
+    add({SolverKind::mumps, OrderingKind::automatic}, 20000);
+  add({SolverKind::klu2, OrderingKind::automatic}, 5000);  // a minute at 20000
   add({SolverKind::cg, OrderingKind::automatic}, 20000);
-  add({SolverKind::gauss_seidel, OrderingKind::automatic}, 5000);  // no solution at 20000
+  add({SolverKind::gauss_seidel, OrderingKind::automatic}, 1000);  // ten seconds a solve at 5000
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
 }

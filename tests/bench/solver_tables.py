@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes the tables of doc/solvers.md that stand between markers, each by its program:
 
-    tests/bench/solver_tables.py [--build BUILD] [TABLE...]      (precision, background, refreshed, cells)
+    tests/bench/solver_tables.py [--build BUILD] [TABLE...]      (solvers, bound, precision, background, refreshed,
+                                                                 cells)
 
 CPU times: compare the columns of a table, which one run has made.
 """
@@ -38,7 +39,62 @@ def precision(build):
     return "\n".join(lines)
 
 
+SIZES = (1000, 5000, 20000)
+SOLVERS = ("supernodal", "cholmod", "tacho", "mumps", "klu2", "cg", "gauss_seidel")
+ORDERINGS = ("geometric", "metis", "amd", "auto")
+
+
+def solve_bench(build, *options):
+    """{(solver, ordering): {spheres: counters}}, medians of runs in random order."""
+    report = json.loads(output(build / "bin/pfv_solve_bench", "--benchmark_repetitions=3", *options,
+                               "--benchmark_enable_random_interleaving=true", "--benchmark_format=json"))
+    rows = {}
+    for row in report["benchmarks"]:
+        if row.get("aggregate_name") == "median":
+            solver, ordering, spheres = row["run_name"].split("/")[:3]
+            rows.setdefault((solver, ordering), {})[int(spheres)] = row
+    return dict(sorted(rows.items(), key=lambda row: (SOLVERS.index(row[0][0]), ORDERINGS.index(row[0][1]))))
+
+
+def digits(number):
+    return f"{number:.3g}" if number < 999.5 else f"{float(f'{number:.3g}'):.0f}"
+
+
+def entries(sizes, text, value):
+    return " / ".join(text(value(sizes[size])) if size in sizes else "–" for size in SIZES)
+
+
+def solvers(build):
+    rows = solve_bench(build)
+    lines = ["| solver, ordering | order 1k / 5k / 20k | factor | solve | order + factor + 100 solves | "
+             "over supernodal's | MB held | residual |", "|--" * 8 + "|"]
+    for (solver, ordering), sizes in rows.items():
+        ours = rows.get(("supernodal", ordering), rows["supernodal", "geometric"])
+        cells = [entries(sizes, digits, lambda row, name=name: row[name])
+                 for name in ("order", "factor", "solve", "hundred")]
+        ratios = " / ".join(f"{sizes[size]['hundred'] / ours[size]['hundred']:.2f}" if size in sizes else "–"
+                            for size in SIZES)
+        name = f"{solver}, {ordering}" if ordering != "auto" else solver
+        lines.append(f"| {name} | " + " | ".join(cells) + f" | {ratios} | " +
+                     entries(sizes, digits, lambda row: row["memory_MB"]) + " | " +
+                     entries(sizes, "{:.0e}".format, lambda row: row["residual"]) + " |")
+    load = ", ".join(f"{load:.1f}" for load in os.getloadavg())
+    return f"Load averages at the end {load}.\n\n" + "\n".join(lines)
+
+
+def bound(build):
+    sizes = solve_bench(build, "--benchmark_filter=supernodal/geometric")["supernodal", "geometric"]
+    lines = ["| spheres | entries of L, million | bandwidth, GB/s | bound, ms | solve, ms | solve / bound |",
+             "|--" * 6 + "|"]
+    for size, row in sizes.items():
+        lines.append(f"| {size} | {row['entries_M']:.3g} | {row['bandwidth_GB_s']:.3g} | {row['bound']:.3g} | "
+                     f"{row['solve']:.3g} | {row['solve'] / row['bound']:.2f} |")
+    return "\n".join(lines)
+
+
 TABLES = {
+    "solvers": solvers,
+    "bound": bound,
     "precision": precision,
     "background": lambda build: output(build / "bin/pfv_background_bench"),
     "refreshed": lambda build: output(build / "bin/pfv_refresh_bench").partition("\n\n")[2],

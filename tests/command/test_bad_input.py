@@ -122,12 +122,12 @@ class BadInput(CommandTest):
         self.refuse_arguments("--solver", "klu2", "--ordering", "metis", *THROUGH_FLOW,
                               parts=["klu2", "metis"])
         self.refuse_arguments("--solver", "cg", "--precision", "mixed", *THROUGH_FLOW,
-                              parts=["cg", "mixed", "cholmod"])
+                              parts=["cg", "mixed", "supernodal"])
         for tolerance in ("0", "1", "-1e-6", "small"):
             self.refuse_arguments("--tolerance", tolerance, "--solver", "cg", *THROUGH_FLOW,
                                   parts=["tolerance"])
         self.refuse_arguments("--tolerance", "1e-6", *THROUGH_FLOW,
-                              parts=["cholmod", "no tolerance", "cg"])
+                              parts=["supernodal", "no tolerance", "cg"])
         for threads in ("0", "65", "-1", "two", "1.5"):
             self.refuse_arguments("--threads", threads, *THROUGH_FLOW,
                                   parts=["--threads", threads, "1 to 64"])

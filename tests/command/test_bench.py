@@ -42,17 +42,17 @@ class Bench(CommandTest):
         self.bench("--spheres", "50,200", "--repeat", "1", "--report", "bench.json")
         report = self.json("bench.json")
         for phase in PHASES:
-            law = report["fits"]["cholmod"][phase]
+            law = report["fits"]["supernodal"][phase]
             for row in report["rows"]:
                 fitted = law["factor"] * row["spheres"] ** law["exponent"]
                 self.assertTrue(
                     math.isclose(fitted, row["cpu_seconds"][phase]["median"], rel_tol=1e-9))
 
     def test_a_prediction_names_the_solver_to_take(self):
-        text = self.bench("--spheres", "50,200", "--repeat", "1", "--solver", "cholmod,klu2",
+        text = self.bench("--spheres", "50,200", "--repeat", "1", "--solver", "supernodal,klu2",
                           "--predict", "300", "--steps", "1000", "--steps-per-network", "100")
         self.assertIn("300 grains, 1000 steps, 10 networks", text)
-        self.assertRegex(text, "take --solver (cholmod|klu2)")
+        self.assertRegex(text, "take --solver (supernodal|klu2)")
 
     def test_what_cannot_be_measured_is_refused(self):
         for arguments, word in ((["--spheres", "5"], "--spheres"),
@@ -60,7 +60,7 @@ class Bench(CommandTest):
                                 (["--steps", "10"], "--predict"),
                                 (["--spheres", "100", "--predict", "10"], "two sizes"),
                                 (["--repeat", "0"], "--repeat"),
-                                (["--solver", "none"], "cholmod"),
+                                (["--solver", "none"], "supernodal"),
                                 (["--precision", "half"], "mixed"),
                                 (["--threads", "0"], "--threads"),
                                 (["--report", "no/such/file.json"], "no/such")):

@@ -36,7 +36,7 @@ class Outputs(CommandTest):
         self.assertEqual(set(report), {*INTEGERS, *NUMBERS, "version", "model", "permeability",
                                        "permeability_tensor", "permeability_error",
                                        "degenerate_share", "outside_range", "force_sum", "solver",
-                                       "ordering",
+                                       "ordering", "solver_made_of",
                                        "conductance", "faces", "openings", "counts", "seconds", "wall_seconds"})
         self.assertIsNone(report["permeability_tensor"])  # periodic axes only
         for key in INTEGERS:
@@ -44,7 +44,7 @@ class Outputs(CommandTest):
         self.assertEqual(report["outside_range"], [])
         for key in (*NUMBERS, "permeability", "permeability_error", "degenerate_share"):
             self.assert_number(report[key])
-        for key in ("solver", "ordering", "conductance", "version", "model"):
+        for key in ("solver", "ordering", "solver_made_of", "conductance", "version", "model"):
             self.assertTrue(report[key])
         self.assert_vector(report["force_sum"])
         self.assertEqual(list(report["faces"]), FACES)

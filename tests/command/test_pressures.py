@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the command line says about faces, patches and the fluid reaches the flow."""
+import os
 import unittest
 
 from command import THROUGH_FLOW, CommandTest, dense_rows, with_velocities
@@ -122,11 +123,15 @@ class Pressures(CommandTest):
 
     def test_solvers_orderings_and_laws_can_be_chosen(self):
         chosen = self.report(*THROUGH_FLOW)
-        for arguments, key, name in ((["--solver", "klu2"], "solver", "klu2"),
-                                     (["--solver", "cholmod"], "solver", "cholmod"),
+        solvers = ["supernodal", "cholmod", "tacho", "klu2"]
+        if os.environ.get("PFV_WITH_MUMPS") != "OFF":
+            solvers.append("mumps")
+        for arguments, key, name in (*((["--solver", name], "solver", name)
+                                       for name in solvers),
+                                     (["--solver", "tacho"], "ordering", "metis"),
                                      (["--ordering", "amd"], "ordering", "amd"),
                                      (["--ordering", "metis"], "ordering", "metis"),
-                                     (["--precision", "mixed"], "solver", "cholmod"),
+                                     (["--precision", "mixed"], "solver", "supernodal"),
                                      (["--threads", "2"], "threads", 2)):
             report = self.report(*THROUGH_FLOW, *arguments)
             self.assertEqual(report[key], name)

@@ -39,8 +39,8 @@ class Settings(CommandTest):
 
     def test_a_setting_that_is_not_read_is_refused_at_its_default_too(self):
         grid = ["--model", "darcy_grid", "--cells", "2", "2", "2"]
-        for words, parts in ((["--tolerance", "1e-10"], ["cholmod", "no tolerance", "cg"]),
-                             (["--solver", "cg", "--precision", "double"], ["cg", "precision", "cholmod"]),
+        for words, parts in ((["--tolerance", "1e-10"], ["supernodal", "no tolerance", "cg"]),
+                             (["--solver", "cg", "--precision", "double"], ["cg", "precision", "supernodal"]),
                              ([*grid, "--conductance", "open_throat"], ["darcy_grid", "no conductance law"]),
                              ([*grid, "--torques"], ["darcy_grid", "no torques"]),
                              (["--drag", "di_felice"], ["pfv takes no drag", "darcy_grid"])):

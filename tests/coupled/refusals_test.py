@@ -69,7 +69,7 @@ class Refusals(CoupledTest):
 
     def test_unknown_law_and_solver(self):
         self.refuse(FLOW + " conductance darcy", "darcy", "hydraulic_radius", after="")
-        self.refuse(FLOW + " solver guess", "guess", "cholmod", after="")
+        self.refuse(FLOW + " solver guess", "guess", "supernodal", after="")
 
     def test_strain_and_interval_not_positive(self):
         self.refuse(FLOW + " retriangulate 0", "strain", after="")
@@ -81,7 +81,7 @@ class Refusals(CoupledTest):
 
     def test_what_is_not_read_is_refused_at_its_default_too(self):
         self.refuse(FLOW + " tolerance 1e-10", "no tolerance", "cg", after="")
-        self.refuse(FLOW + " solver cg precision double", "no choice of precision", "cholmod", after="")
+        self.refuse(FLOW + " solver cg precision double", "no choice of precision", "supernodal", after="")
         self.refuse(WATER + " couple_every auto coupling staged", "couple_every auto", "each step", after="")
         self.refuse(WATER + " couple_every auto rebuild_lag 5", "couple_every auto", "rebuild_lag", after="")
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/ordering.hpp"
+#include "sparse/ordering.hpp"
 
 #include "pfv/error.hpp"
+#include "solve/fill_reducing_ordering.hpp"
+#include "solve/linear_solver.hpp"
+#include "sparse/sparse_error.hpp"
 #include "support/matrices.hpp"
 
 #include <gtest/gtest.h>
@@ -119,7 +122,7 @@ TEST(GeometricOrdering, FillsThePoresOfAPackingLittleMoreThanMetis) {
 }
 
 TEST(GeometricOrdering, AsksForThePlacesThatAreMissing) {
-  const auto solver = make_solver(SolverKind::cholmod, OrderingKind::geometric);
+  const auto solver = make_solver(SolverKind::supernodal, OrderingKind::geometric);
   const std::string message = message_of<SolverError>([&] { solver->order(lattice(3)); });
   EXPECT_TRUE(contains(message, "place of each of 27 unknowns")) << message;
 }

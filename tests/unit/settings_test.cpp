@@ -54,7 +54,7 @@ TEST(Names, EachOptionReadsBackAsItself) {
 }
 
 TEST(Names, AnUnknownNameIsRefusedWithTheListOfThoseThatExist) {
-  expect_line(refusal([] { pfv::named<pfv::SolverKind>("pardiso"); }), "auto, cholmod, klu2");
+  expect_line(refusal([] { pfv::named<pfv::SolverKind>("pardiso"); }), "auto, supernodal, cholmod, tacho, klu2");
   expect_line(refusal([] { pfv::named<pfv::OrderingKind>(""); }), "auto, geometric, metis, amd");
   expect_line(refusal([] { pfv::named<pfv::ConductanceLaw>("Hydraulic_radius"); }),
                "hydraulic_radius, effective_radius");

@@ -98,7 +98,7 @@ SymmetricMatrix cluster(int pores, double tie) {
 TEST(MixedPrecision, SaysWhereItDoesNotSuffice) {
   const SymmetricMatrix matrix = cluster(50, 1e-8);
   const Eigen::VectorXd b = Eigen::VectorXd::Unit(50, 49);
-  const auto exact = make_solver(SolverKind::cholmod, OrderingKind::amd);
+  const auto exact = make_solver(SolverKind::supernodal, OrderingKind::amd);
   Options in_single_precision;
   in_single_precision.ordering = OrderingKind::amd;
   in_single_precision.precision = Precision::mixed;

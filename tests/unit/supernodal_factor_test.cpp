@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numeric factorisation: its kernels on any set of instructions, and what it makes of graphs that
 // are cut into subtrees, wide or in many parts.
-#include "pfv/error.hpp"
-#include "solve/cholmod_factor.hpp"
-#include "solve/linear_solver.hpp"
-#include "solve/ordering.hpp"
+#include "sparse/cholesky.hpp"
+#include "sparse/ordering.hpp"
+#include "sparse/sparse_error.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
@@ -113,14 +112,10 @@ SymmetricMatrix grid(int nx, int ny, int nz, double tie) {
   return matrix;
 }
 
-SymmetricRows rows_of(const SymmetricMatrix& matrix) {
-  return {matrix.size(), matrix.row_begin.data(), matrix.column.data(), matrix.value.data()};
-}
-
-Eigen::VectorXd solution(CholmodFactor& factor, const SymmetricMatrix& matrix, Team& team) {
+Eigen::VectorXd solution(SparseCholesky& factor, const SymmetricMatrix& matrix, Team& team) {
   Eigen::VectorXd b(matrix.size()), x(matrix.size());
   for (int i = 0; i < matrix.size(); ++i) b[i] = number(i);
-  factor.factorize(rows_of(matrix), team);
+  factor.factorize(matrix.rows(), team);
   factor.solve(b.data(), x.data(), team);
   return x;
 }
@@ -129,8 +124,8 @@ Eigen::VectorXd solution(CholmodFactor& factor, const SymmetricMatrix& matrix, T
 TEST(SupernodalFactor, SolvesTheSameForAnyNumberOfThreads) {
   const SymmetricMatrix matrix = grid(18, 18, 18, 1.0);
   const std::vector<int> order = metis_ordering(matrix);
-  CholmodFactor factor;
-  factor.analyze(rows_of(matrix), order);
+  SparseCholesky factor;
+  factor.analyze(matrix.rows(), order);
   ASSERT_GT(factor.entries(), 200000u);
   Team alone;
   const Eigen::VectorXd expected = solution(factor, matrix, alone);
@@ -155,8 +150,8 @@ TEST(SupernodalFactor, IsThatOfADenseMatrix) {
     Eigen::VectorXd b(matrix.size());
     for (int i = 0; i < matrix.size(); ++i) b[i] = number(i);
     const Eigen::VectorXd expected = dense.llt().solve(b);
-    CholmodFactor factor;
-    factor.analyze(rows_of(matrix), {});
+    SparseCholesky factor;
+    factor.analyze(matrix.rows(), {});
     const Eigen::VectorXd x = solution(factor, matrix, team);
     EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm()) << matrix.size();
     EXPECT_EQ(solution(factor, matrix, team), x) << "again";
@@ -167,12 +162,12 @@ TEST(SupernodalFactor, SaysWhereNoPivotIsLeft) {
   const SymmetricMatrix loose = grid(18, 18, 18, 0.0);
   for (const int threads : {1, 3}) {
     Team team(threads);
-    CholmodFactor factor;
-    factor.analyze(rows_of(loose), metis_ordering(loose));
+    SparseCholesky factor;
+    factor.analyze(loose.rows(), metis_ordering(loose));
     try {
-      factor.factorize(rows_of(loose), team);
+      factor.factorize(loose.rows(), team);
       FAIL() << "a singular matrix was factored";
-    } catch (const SolverError& error) {
+    } catch (const NotPositiveDefinite& error) {
       EXPECT_NE(std::string(error.what()).find("not positive definite at row"), std::string::npos);
     }
   }

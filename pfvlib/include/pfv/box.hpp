@@ -14,6 +14,7 @@ namespace pfv {
 enum class Face { xlo, xhi, ylo, yhi, zlo, zhi };
 inline constexpr std::array<Face, 6> all_faces{Face::xlo, Face::xhi, Face::ylo,
                                                Face::yhi, Face::zlo, Face::zhi};
+inline constexpr int face_count = static_cast<int>(all_faces.size());
 
 inline int axis_of(Face face) { return static_cast<int>(face) / 2; }
 inline bool is_upper(Face face) { return static_cast<int>(face) % 2 == 1; }

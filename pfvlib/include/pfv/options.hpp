@@ -20,16 +20,19 @@ struct Names<ConductanceLaw> {
        {ConductanceLaw::open_throat, "open_throat"}}};
 };
 
-/// Direct solvers behind Amesos2: cholmod (`automatic`), klu2 (the plain reference), mumps (where the
-/// build has it: CMake's PFV_WITH_MUMPS). Iterative ones: cg, conjugate gradients with incomplete
-/// Cholesky; gauss_seidel with over-relaxation.
-enum class SolverKind { automatic, cholmod, klu2, mumps, cg, gauss_seidel };
+/// Direct solvers behind Amesos2: supernodal (`automatic`), CHOLMOD's symbolic factorisation with numeric
+/// one and solves of this library; cholmod, CHOLMOD's own; tacho, Trilinos' sparse Cholesky; klu2, its plain
+/// sparse LU; mumps (unless CMake's PFV_WITH_MUMPS is off). Iterative ones: cg, conjugate gradients with
+/// incomplete Cholesky; gauss_seidel with over-relaxation.
+enum class SolverKind { automatic, supernodal, cholmod, tacho, klu2, mumps, cg, gauss_seidel };
 template <>
 struct Names<SolverKind> {
   static constexpr const char* what = "solver";
-  static constexpr std::array<Named<SolverKind>, 6> all{
+  static constexpr std::array<Named<SolverKind>, 8> all{
       {{SolverKind::automatic, "auto"},
+       {SolverKind::supernodal, "supernodal"},
        {SolverKind::cholmod, "cholmod"},
+       {SolverKind::tacho, "tacho"},
        {SolverKind::klu2, "klu2"},
        {SolverKind::mumps, "mumps"},
        {SolverKind::cg, "cg"},
@@ -37,8 +40,8 @@ struct Names<SolverKind> {
 };
 
 /// Fill-reducing ordering: nested dissection of the pore centres in space (`automatic`) or of the
-/// graph by METIS, or minimum degree: cholmod's. The other solvers order themselves or not at all and
-/// refuse a choice (klu2 takes amd, its own).
+/// graph by METIS (tacho's `automatic`), or minimum degree: of supernodal, cholmod and tacho. The other
+/// solvers order themselves or not at all and refuse a choice (klu2 takes amd, its own).
 enum class OrderingKind { automatic, geometric, metis, amd };
 template <>
 struct Names<OrderingKind> {
@@ -50,7 +53,7 @@ struct Names<OrderingKind> {
        {OrderingKind::amd, "amd"}}};
 };
 
-/// How cholmod keeps its factor. `full`: in double precision. `mixed`: in single precision, half of what a
+/// How supernodal keeps its factor. `full`: in double precision. `mixed`: in single precision, half of what a
 /// solve has to read; residuals are taken in double precision and solved for again until they are below
 /// 1e-9 of the right-hand side, from the last solution on, so that a step that changes little costs one solve.
 enum class Precision { full, mixed };

@@ -73,6 +73,7 @@ struct Report {
   double force_balance_error = 0;
   double residual = 0;
   std::string solver, ordering, conductance;
+  std::string solver_made_of;  ///< which code ordered, analysed, factored and solved
   std::array<FaceResult, 6> faces;
   std::vector<OpeningResult> openings;  ///< the patches, then the regions, in their order
   Counts counts;
@@ -148,6 +149,7 @@ void for_each_entry(const Report& report, const See& see) {
   see("residual", report.residual);
   see("solver", report.solver);
   see("ordering", report.ordering);
+  see("solver_made_of", report.solver_made_of);
   see("conductance", report.conductance);
   see("faces", report.faces);
   see("openings", report.openings);

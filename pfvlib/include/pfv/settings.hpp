@@ -45,7 +45,7 @@ struct Hosts {
   bool of_grid = false;   ///< `fix pfv`: behind `model darcy_grid NX NY NZ`
 };
 
-struct SolverTraits;
+struct SolverAbilities;
 
 /// One row of the table that the command line, the fix, their help and messages and the page
 /// doc/settings.md are made of.
@@ -58,7 +58,7 @@ struct Setting {
   std::string help;
   Hosts hosts;
   std::vector<Model> models;                    ///< that read it
-  bool SolverTraits::*solvers = nullptr;        ///< the solvers that read it; null: all
+  bool SolverAbilities::*solvers = nullptr;        ///< the solvers that read it; null: all
   int words = 1;                                ///< of its value; 0: the command's option is a flag
   std::function<void(Settings&, Words&)> read;
   std::function<std::string(const Settings&)> text;  ///< of its present value

@@ -36,27 +36,28 @@ Eigen::Matrix3Xd spread(const Eigen::Matrix3Xd& active, const std::vector<int>& 
 const Forces& DarcyData::compute(const Packing& packing, double at_time, bool advance) {
   const double wall_start = wall_seconds();
   {
-    const PhaseClock clock(seconds.total);
+    const PhaseClock clock(work.seconds.total);
     solved = false;
     if (needs_look(packing)) look(packing);
     Eigen::Matrix3Xd velocities;
     gather_velocities(packing, built->grains.columns, velocities);
-    moving = grid_options.grain_motion && !at_rest(packing, box);
-    cells.carried = moving ? grain_velocities(built->overlaps, velocities)
-                           : Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, built->grid.size()));
+    last.moving = grid_options.grain_motion && !at_rest(packing, box);
+    last.cells.carried = last.moving ? grain_velocities(built->overlaps, velocities)
+                                     : Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, built->grid.size()));
     update_rates();
     refuse_undetermined();
     solve_pressures(at_time);
-    cells.gradient = fields.gradient;
-    cells.discharge = -(fields.gradient.array().rowwise() * built->mobility.transpose().array());
+    last.cells.gradient = last.fields.gradient;
+    last.cells.discharge =
+        -(last.fields.gradient.array().rowwise() * built->mobility.transpose().array());
     if (options.forces) compute_forces(packing, velocities);
     sum_faces();
-    solved_box = box;
+    last.box = box;
     solved = true;
     time = at_time;
     if (advance) ++steps_since_look;
   }
-  wall_total += wall_seconds() - wall_start;
+  work.wall_seconds.total += wall_seconds() - wall_start;
   return forces;
 }
 
@@ -88,13 +89,13 @@ void DarcyData::look(const Packing& packing) {
   check(box);
   auto fresh = std::make_unique<BuiltGrid>();
   {
-    const PhaseClock clock(seconds.triangulate);
+    const PhaseClock clock(work.seconds.triangulate);
     fresh->grains = select_grains(packing, box, options.outside);
     fresh->lower = box.lower;
     fresh->grid = make_grid(box, grid_options.cells);
     fresh->faces = boundary_faces(fresh->grid, box);
     fresh->overlaps = solid_overlaps(fresh->grains.spheres, fresh->grid);
-    ++counts.triangulate;
+    ++work.counts.triangulate;
   }
   fresh->porosity = 1.0 - fresh->overlaps.solid.array() / fresh->grid.volume();
   const Spheres& spheres = fresh->grains.spheres;
@@ -108,38 +109,38 @@ void DarcyData::look(const Packing& packing) {
   if (built) ++looks;
   built = std::move(fresh);
   packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
-  cells.porosity = built->porosity;
-  cells.permeability = built->permeability;
+  last.cells.porosity = built->porosity;
+  last.cells.permeability = built->permeability;
   factor();
   stale = false;
   steps_since_look = 0;
 }
 
 void DarcyData::factor() {
-  right_side.resize(0);
+  last.right_side.resize(0);
   built->determined = has_pressure(built->faces, box);
   {
-    const PhaseClock clock(seconds.assemble);
+    const PhaseClock clock(work.seconds.assemble);
     built->matrix = assemble(built->grid, built->faces, box, built->mobility);
   }
   if (!built->determined) return;
   if (!solver) {
-    const PhaseClock clock(seconds.order);
+    const PhaseClock clock(work.seconds.order);
     solver = make_solver(options, std::make_shared<Team>(options.threads));
     solver->order(built->matrix, cell_centres(built->grid));
-    ++counts.order;
+    ++work.counts.order;
   }
-  const PhaseClock clock(seconds.factor);
+  const PhaseClock clock(work.seconds.factor);
   solver->factor(built->matrix);
-  ++counts.factor;
+  ++work.counts.factor;
 }
 
 void DarcyData::update_rates() {
-  const PhaseClock clock(seconds.assemble);
-  rates = Eigen::VectorXd::Zero(built->grid.size());
-  if (!moving) return;
-  rates = volume_rates(built->grid, built->faces, box, built->overlaps, cells.carried);
-  ++counts.volume_rate;
+  const PhaseClock clock(work.seconds.assemble);
+  last.rates = Eigen::VectorXd::Zero(built->grid.size());
+  if (!last.moving) return;
+  last.rates = volume_rates(built->grid, built->faces, box, built->overlaps, last.cells.carried);
+  ++work.counts.volume_rate;
 }
 
 void DarcyData::refuse_undetermined() const {
@@ -149,7 +150,7 @@ void DarcyData::refuse_undetermined() const {
     const Boundary& boundary = boundary_of(box, face.boundary);
     flux = flux || boundary.drives_flux();
   }
-  if (moving || flux)
+  if (last.moving || flux)
     throw InputError(std::string("darcy_grid: ") +
                      (flux ? "a flux is imposed" : "the grains or faces move") +
                      " and no face or patch has a pressure: nothing determines the pressure; give "
@@ -158,32 +159,32 @@ void DarcyData::refuse_undetermined() const {
 
 /// Solves anew only where rates or boundary values have changed.
 void DarcyData::solve_pressures(double at_time) {
-  const PhaseClock clock(seconds.solve);
+  const PhaseClock clock(work.seconds.solve);
   const BuiltGrid& b = *built;
-  reference = reference_pressure(b.grid, b.faces, box, at_time);
-  const GridDrive drive = drive_of(b.grid, b.faces, box, at_time, reference);
+  last.reference = reference_pressure(b.grid, b.faces, box, at_time);
+  const GridDrive drive = drive_of(b.grid, b.faces, box, at_time, last.reference);
   const Eigen::VectorXd right =
-      right_hand_side(b.grid, b.faces, box, b.mobility, drive, -rates);
+      right_hand_side(b.grid, b.faces, box, b.mobility, drive, -last.rates);
   if (!b.determined) {
-    solution = Eigen::VectorXd::Zero(b.grid.size());
-    right_side = right;
-  } else if (right_side.size() == 0 || right != right_side) {
-    right_side = right;
-    solver->solve(right_side, solution);
-    ++counts.solve;
+    last.relative = Eigen::VectorXd::Zero(b.grid.size());
+    last.right_side = right;
+  } else if (last.right_side.size() == 0 || right != last.right_side) {
+    last.right_side = right;
+    solver->solve(last.right_side, last.relative);
+    ++work.counts.solve;
   }
-  fields = fields_of(b.grid, b.faces, box, b.mobility, drive, solution);
-  pressures = solution.array() + reference;
+  last.fields = fields_of(b.grid, b.faces, box, b.mobility, drive, last.relative);
+  last.pressures = last.relative.array() + last.reference;
 }
 
 void DarcyData::compute_forces(const Packing& packing, const Eigen::Matrix3Xd& velocities) {
-  const PhaseClock clock(seconds.forces);
+  const PhaseClock clock(work.seconds.forces);
   const BuiltGrid& b = *built;
   const Spheres& spheres = b.grains.spheres;
-  coefficients =
-      drag_coefficients(b.overlaps, spheres, fluid, grid_options.drag, cells, velocities);
-  GrainForces grain = grain_forces(b.overlaps, coefficients, cells, velocities);
-  grain_sum = grain.pressure.rowwise().sum() + grain.drag.rowwise().sum();
+  last.coefficients =
+      drag_coefficients(b.overlaps, spheres, fluid, grid_options.drag, last.cells, velocities);
+  GrainForces grain = grain_forces(b.overlaps, last.coefficients, last.cells, velocities);
+  last.grain_sum = grain.pressure.rowwise().sum() + grain.drag.rowwise().sum();
   if (options.buoyancy && !fluid.gravity.isZero(0.0))
     for (int i = 0; i < spheres.size(); ++i)
       grain.pressure.col(i) -=
@@ -199,7 +200,7 @@ void DarcyData::compute_forces(const Packing& packing, const Eigen::Matrix3Xd& v
   for (int s = 0; s < b.overlaps.spheres(); ++s) {
     double sum = 0.0, volume = 0.0;
     for (int i = b.overlaps.begin[s]; i < b.overlaps.begin[s + 1]; ++i) {
-      sum += b.overlaps.volume[i] * pressures[b.overlaps.cell[i]];
+      sum += b.overlaps.volume[i] * last.pressures[b.overlaps.cell[i]];
       volume += b.overlaps.volume[i];
     }
     if (volume > 0.0) forces.sphere_pressure[b.grains.columns[s]] = sum / volume;
@@ -207,59 +208,72 @@ void DarcyData::compute_forces(const Packing& packing, const Eigen::Matrix3Xd& v
 }
 
 void DarcyData::sum_faces() {
-  faces = {};
+  last.faces = {};
   const BuiltGrid& b = *built;
   for (std::size_t f = 0; f < b.faces.size(); ++f) {
     const auto i = static_cast<Eigen::Index>(f);
     const Face face = b.faces[f].face;
-    FaceResult& result = faces[static_cast<int>(face)];
-    result.flux += fields.face_inflow[i];
-    result.force_pressure += (fields.face_pressure[i] + reference) *
+    FaceResult& result = last.faces[static_cast<int>(face)];
+    result.flux += last.fields.face_inflow[i];
+    result.force_pressure += (last.fields.face_pressure[i] + last.reference) *
                              b.grid.face_area(axis_of(face)) * outward_normal(face);
   }
 }
 
-/// The drag of the last call as an operator on small changes of the velocities of grains and faces.
-double DarcyData::time_step_limit(const Eigen::VectorXd& masses,
-                                  const std::array<Piston, 6>& pistons) {
+void DarcyData::check_masses(const Eigen::VectorXd& masses) const {
   if (masses.size() != static_cast<Eigen::Index>(packing_ids.size()))
     throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
                      std::to_string(packing_ids.size()) + " spheres; give one a sphere");
   if (!(masses.array() > 0.0).all())
     throw InputError("time step limit: a mass is not a positive number; give kg");
   if (!options.forces) throw InputError("time step limit: switch Options::forces on");
+}
+
+/// Change of the pressures where grains and faces of `moved` change their velocities, which `change` gets.
+GridFields DarcyData::response_to(const Eigen::Matrix3Xd& velocities, const Box& moved,
+                                  CellState& change) {
   const BuiltGrid& b = *built;
-  const int spheres = b.grains.spheres.size();
   const auto count = static_cast<Eigen::Index>(b.faces.size());
   const GridDrive none{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
-  CellState change = cells;
+  Eigen::VectorXd response = Eigen::VectorXd::Zero(b.grid.size());
+  change.carried.setZero();
+  if (grid_options.grain_motion && b.determined) {
+    change.carried = grain_velocities(b.overlaps, velocities);
+    solver->solve(-volume_rates(b.grid, b.faces, moved, b.overlaps, change.carried), response);
+    ++work.counts.limit_solve;
+  }
+  GridFields answer = fields_of(b.grid, b.faces, box, b.mobility, none, response);
+  change.gradient = answer.gradient;
+  change.discharge = -(change.gradient.array().rowwise() * b.mobility.transpose().array());
+  return answer;
+}
+
+/// The drag of the last call as an operator on small changes of the velocities of grains and faces.
+double DarcyData::time_step_limit(const Eigen::VectorXd& masses,
+                                  const std::array<Piston, 6>& pistons) {
+  check_masses(masses);
+  const BuiltGrid& b = *built;
+  const int spheres = b.grains.spheres.size();
+  CellState change = last.cells;
   Box moved = box;
   const auto drag = [&](const Eigen::VectorXd& v) {
     const Eigen::Matrix3Xd velocities = v.head(3 * spheres).reshaped(3, spheres);
-    for (int f = 0; f < 6; ++f) moved.faces[f].velocity = v[3 * spheres + f];
-    Eigen::VectorXd response = Eigen::VectorXd::Zero(b.grid.size());
-    change.carried.setZero();
-    if (grid_options.grain_motion && b.determined) {
-      change.carried = grain_velocities(b.overlaps, velocities);
-      solver->solve(-volume_rates(b.grid, b.faces, moved, b.overlaps, change.carried), response);
-    }
-    const GridFields answer = fields_of(b.grid, b.faces, box, b.mobility, none, response);
-    change.gradient = answer.gradient;
-    change.discharge = -(change.gradient.array().rowwise() * b.mobility.transpose().array());
-    const GrainForces force = grain_forces(b.overlaps, coefficients, change, velocities);
+    for (int f = 0; f < face_count; ++f) moved.faces[f].velocity = v[3 * spheres + f];
+    const GridFields answer = response_to(velocities, moved, change);
+    const GrainForces force = grain_forces(b.overlaps, last.coefficients, change, velocities);
     Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(v.size());
     for (int i = 0; i < spheres; ++i)
       acceleration.segment<3>(3 * i) =
           -(force.pressure.col(i) + force.drag.col(i)) / masses[b.grains.columns[i]];
-    for (Eigen::Index f = 0; f < count; ++f) {
+    for (std::size_t f = 0; f < b.faces.size(); ++f) {
       const Face face = b.faces[f].face;
       acceleration[3 * spheres + static_cast<int>(face)] -=
-          (is_upper(face) ? 1.0 : -1.0) * answer.face_pressure[f] *
+          (is_upper(face) ? 1.0 : -1.0) * answer.face_pressure[static_cast<Eigen::Index>(f)] *
           b.grid.face_area(axis_of(face)) / pistons[static_cast<int>(face)].mass;
     }
     return acceleration;
   };
-  const double eigenvalue = largest_eigenvalue(drag, 3 * spheres + 6);
+  const double eigenvalue = largest_eigenvalue(drag, 3 * spheres + face_count);
   return eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
 }
 

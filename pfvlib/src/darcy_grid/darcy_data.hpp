@@ -5,6 +5,7 @@
 #include "darcy_grid/grain_drag.hpp"
 #include "darcy_grid/grid_flow.hpp"
 #include "pfv/darcy_grid.hpp"
+#include "work/work_record.hpp"
 
 #include <memory>
 #include <optional>
@@ -24,6 +25,22 @@ struct BuiltGrid {
   bool determined = false;  ///< some face has a pressure; else the pressure is 0 everywhere
 };
 
+/// What one call has found: a value, with the grid that it was found on.
+struct GridSolution {
+  Box box;                          ///< as it was then
+  bool moving = false;
+  double reference = 0.0;           ///< pressure that was subtracted before solving, Pa
+  Eigen::VectorXd rates;            ///< m³/s, that moving grains push out of each cell
+  Eigen::VectorXd right_side;       ///< m³/s
+  Eigen::VectorXd relative;         ///< pressures less the reference, Pa
+  GridFields fields;                ///< pressures relative to the reference
+  CellState cells;
+  Eigen::VectorXd coefficients;     ///< of the drag, one a part of the overlaps
+  Eigen::VectorXd pressures;        ///< Pa
+  Eigen::Vector3d grain_sum = Eigen::Vector3d::Zero();  ///< N, of the flow on all grains
+  std::array<FaceResult, 6> faces;
+};
+
 /// The state behind DarcyGrid.
 struct DarcyData {
   Box box;
@@ -32,31 +49,18 @@ struct DarcyData {
   Options options;
 
   std::unique_ptr<BuiltGrid> built;
+  std::vector<std::int64_t> packing_ids;
   std::unique_ptr<LinearSolver> solver;  ///< its ordering serves every look at the porosity
   bool stale = true;
   int steps_since_look = 0;
   double time = 0.0;
   std::int64_t looks = 0;  ///< after the first
-  Counts counts;
-  Seconds seconds;
-  double wall_total = 0.0;
+  WorkRecord work;
 
   // of the last call
   bool solved = false;
-  Box solved_box;                   ///< as it was then
-  bool moving = false;
-  double reference = 0.0;           ///< pressure that was subtracted before solving, Pa
-  Eigen::VectorXd rates;            ///< m³/s, that moving grains push out of each cell
-  Eigen::VectorXd right_side;       ///< m³/s
-  Eigen::VectorXd solution;         ///< Pa, relative to the reference
-  GridFields fields;                ///< pressures relative to the reference
-  CellState cells;
-  Eigen::VectorXd coefficients;     ///< of the drag, one a part of the overlaps
-  Eigen::VectorXd pressures;        ///< Pa
-  Eigen::Vector3d grain_sum = Eigen::Vector3d::Zero();  ///< N, of the flow on all grains
+  GridSolution last;
   Forces forces;
-  std::array<FaceResult, 6> faces;
-  std::vector<std::int64_t> packing_ids;
 
   const Forces& compute(const Packing& packing, double at_time, bool advance);
   double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
@@ -71,6 +75,8 @@ struct DarcyData {
   void solve_pressures(double at_time);
   void compute_forces(const Packing& packing, const Eigen::Matrix3Xd& velocities);
   void sum_faces();
+  void check_masses(const Eigen::VectorXd& masses) const;
+  GridFields response_to(const Eigen::Matrix3Xd& velocities, const Box& moved, CellState& change);
 };
 
 /// Balances, counts and times, from the last call.

@@ -86,12 +86,12 @@ const Forces& DarcyGrid::forces() const {
 
 const std::array<FaceResult, 6>& DarcyGrid::faces() const {
   data_->require_result();
-  return data_->faces;
+  return data_->last.faces;
 }
 
 std::array<Eigen::Vector3d, 6> DarcyGrid::face_forces() const {
   std::array<Eigen::Vector3d, 6> forces;
-  for (int f = 0; f < 6; ++f) forces[f] = faces()[f].force_pressure;
+  for (int f = 0; f < face_count; ++f) forces[f] = faces()[f].force_pressure;
   return forces;
 }
 
@@ -103,8 +103,8 @@ double DarcyGrid::pressure_at(const Eigen::Vector3d& place) const {
     if (!(relative[axis] >= 0.0 && relative[axis] <= grid.counts[axis] * grid.lengths[axis]))
       throw InputError("no pressure at a place outside the box");
   const int cell = grid.cell_at(relative);
-  return data_->pressures[cell] +
-         data_->fields.gradient.col(cell).dot(relative - grid.centre(cell));
+  return data_->last.pressures[cell] +
+         data_->last.fields.gradient.col(cell).dot(relative - grid.centre(cell));
 }
 
 double DarcyGrid::plane_pressure(int axis, double position) const {
@@ -120,8 +120,8 @@ double DarcyGrid::plane_pressure(int axis, double position) const {
   int count = 0;
   for (int cell = 0; cell < grid.size(); ++cell) {
     if (grid.place(cell)[axis] != layer) continue;
-    sum += data_->pressures[cell] +
-           data_->fields.gradient(axis, cell) * (relative - grid.centre(cell)[axis]);
+    sum += data_->last.pressures[cell] +
+           data_->last.fields.gradient(axis, cell) * (relative - grid.centre(cell)[axis]);
     ++count;
   }
   return sum / count;
@@ -130,7 +130,7 @@ double DarcyGrid::plane_pressure(int axis, double position) const {
 double DarcyGrid::mean_pressure() const {
   data_->require_result();
   const Eigen::VectorXd fluid = data_->built->porosity.cwiseMax(0.0);
-  return fluid.sum() > 0.0 ? fluid.dot(data_->pressures) / fluid.sum() : 0.0;
+  return fluid.sum() > 0.0 ? fluid.dot(data_->last.pressures) / fluid.sum() : 0.0;
 }
 
 double DarcyGrid::time_step_limit(const Eigen::VectorXd& masses,
@@ -149,7 +149,7 @@ std::int64_t DarcyGrid::hidden_or_outside() const {
 
 const Eigen::VectorXd& DarcyGrid::cell_pressures() const {
   data_->require_result();
-  return data_->pressures;
+  return data_->last.pressures;
 }
 
 const Eigen::VectorXd& DarcyGrid::cell_porosities() const {
@@ -164,7 +164,7 @@ const Eigen::VectorXd& DarcyGrid::cell_permeabilities() const {
 
 Eigen::Matrix3Xd DarcyGrid::cell_velocities() const {
   data_->require_result();
-  return data_->cells.discharge;
+  return data_->last.cells.discharge;
 }
 
 Eigen::Vector3d DarcyGrid::cell_lengths() const {

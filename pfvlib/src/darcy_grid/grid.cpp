@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "darcy_grid/grid.hpp"
 
+#include "network/pore_boundaries.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -77,7 +79,7 @@ std::vector<GridFace> boundary_faces(const Grid& grid, const Box& box) {
     for (int cell = 0; cell < grid.size(); ++cell)
       if (grid.neighbour(cell, face) < 0) faces.push_back({cell, face, static_cast<int>(face)});
   for (std::size_t i = 0; i < box.patches.size(); ++i)
-    apply(box.patches[i], 6 + static_cast<int>(i), grid, box, faces);
+    apply(box.patches[i], patch_number(i), grid, box, faces);
   return faces;
 }
 

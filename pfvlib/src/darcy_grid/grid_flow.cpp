@@ -48,7 +48,7 @@ GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const B
                    double time, double reference) {
   const auto count = static_cast<Eigen::Index>(faces.size());
   GridDrive drive{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
-  std::vector<int> shares(6 + box.patches.size(), 0);
+  std::vector<int> shares(first_region(box), 0);
   for (const GridFace& face : faces) ++shares[face.boundary];
   for (std::size_t b = 0; b < shares.size(); ++b) {
     const Boundary& boundary = boundary_of(box, static_cast<int>(b));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "geometry/pi.hpp"
+
 #include <cmath>
 
 namespace pfv {
@@ -9,7 +11,7 @@ namespace pfv {
 /// last place for arguments that are not tiny or huge. Rational approximation of Moshier's Cephes
 /// library, 1989.
 inline double arctangent(double y, double x) {
-  constexpr double pi = 3.14159265358979323846, tangent_of_eighth = 0.41421356237309503;
+  constexpr double tangent_of_eighth = 0.41421356237309503;
   const double ax = std::abs(x), ay = std::abs(y);
   const double large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
   const bool high = small > tangent_of_eighth * large;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/ball_corner.hpp"
 
+#include "geometry/pi.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace pfv {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 BallSection operator-(const BallSection& one, const BallSection& other) {
   return {one.volume - other.volume, one.area - other.area};

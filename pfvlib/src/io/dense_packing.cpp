@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pfv/dense_packing.hpp"
 
+#include "geometry/pi.hpp"
 #include "pfv/error.hpp"
 
 #include <algorithm>
@@ -69,7 +70,7 @@ PackingArrays dense_packing(int spheres, double solid_fraction, double spread, u
     packing.radii[k] = 1.0 + spread * (2.0 * uniform() - 1.0);
     for (int axis = 0; axis < 3; ++axis) packing.positions(axis, k) = uniform();
   }
-  constexpr double ball = 4.0 / 3.0 * 3.14159265358979323846;
+  constexpr double ball = 4.0 / 3.0 * pi;
   packing.radii *= std::cbrt(solid_fraction / (ball * packing.radii.array().cube().sum()));
 
   Eigen::Matrix3Xd& x = packing.positions;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "network/grains.hpp"
 
+#include "geometry/pi.hpp"
 #include "text/number_text.hpp"
 #include "pfv/error.hpp"
 
@@ -139,7 +140,6 @@ void gather_velocities(const Packing& packing, const std::vector<int>& columns,
 }
 
 double displaced_volume(const Packing& packing, Eigen::Index column) {
-  constexpr double pi = 3.14159265358979323846;
   if (packing.displaced_volumes.size() == packing.size()) return packing.displaced_volumes[column];
   const double r = packing.radii[column];
   return 4.0 / 3.0 * pi * r * r * r;

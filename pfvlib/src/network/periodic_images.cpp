@@ -238,44 +238,51 @@ Images replicate(const Spheres& spheres, double margin) {
   return images;
 }
 
-bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
-          PoreNetwork& network) {
-  network = {};
-  std::vector<int> home(all.pores(), -1);
+namespace {
+
+/// Where the pores of the full network are in one period.
+struct Folding {
+  std::vector<int> home;      ///< number of each pore that lies in the period, or -1
+  std::vector<char> needed;   ///< it lies there, or is a neighbour of one that does
+  std::vector<Place> places;  ///< of the needed ones
+};
+
+/// False where an image of a needed pore is not found.
+bool find_places(const PoreNetwork& all, const Spheres& spheres, double spacing, Folding& folding) {
+  folding.home.assign(all.pores(), -1);
+  folding.needed.assign(all.pores(), 0);
+  folding.places.resize(all.pores());
   int pores = 0;
   for (int pore = 0; pore < all.pores(); ++pore)
     if (shift_of(all.pore_centres.col(pore), spheres) == std::array<int, 3>{0, 0, 0})
-      home[pore] = pores++;
-
-  const PoreFinder finder(all, home, spacing);
-  std::vector<Place> places(all.pores());
-  std::vector<char> needed(all.pores(), 0);
+      folding.home[pore] = pores++;
+  const PoreFinder finder(all, folding.home, spacing);
   for (const auto& both : all.throat_pores) {
-    if (home[both[0]] < 0 && home[both[1]] < 0) continue;
+    if (folding.home[both[0]] < 0 && folding.home[both[1]] < 0) continue;
     for (const int pore : both) {
-      if (needed[pore]) continue;
-      needed[pore] = 1;
+      if (folding.needed[pore]) continue;
+      folding.needed[pore] = 1;
       const Eigen::Vector3d centre = all.pore_centres.col(pore);
-      places[pore].shift = shift_of(centre, spheres);
-      const int found = finder.find(centre - displacement(places[pore].shift, spheres));
+      Place& place = folding.places[pore];
+      place.shift = shift_of(centre, spheres);
+      const int found = finder.find(centre - displacement(place.shift, spheres));
       if (found < 0) return false;
-      places[pore].pore = home[found];
+      place.pore = folding.home[found];
     }
   }
-  for (int c = 0; c < all.cells(); ++c)
-    if (needed[all.cell_pore[c]] && !is_settled(all, images, spheres, c)) return false;
+  return true;
+}
 
-  if (!repeats(all, images.spheres, home, places)) return false;
-
+/// Of all images of a throat the one that starts at home in the smaller pore, or forwards in one pore.
+std::vector<FoldedThroat> fold_throats(const PoreNetwork& all, const Folding& folding) {
   std::vector<FoldedThroat> throats;
   constexpr std::array<int, 3> here{0, 0, 0};
   for (int t = 0; t < all.throats(); ++t) {
     const auto [i, j] = all.throat_pores[t];
-    if (!needed[i] || !needed[j]) continue;
+    if (!folding.needed[i] || !folding.needed[j]) continue;
     for (const bool turned : {false, true}) {
-      const Place& first = places[turned ? j : i];
-      const Place& second = places[turned ? i : j];
-      // of all its images, the one that starts at home in the smaller pore, or forwards in one pore
+      const Place& first = folding.places[turned ? j : i];
+      const Place& second = folding.places[turned ? i : j];
       if (first.shift != here || first.pore > second.pore ||
           (first.pore == second.pore && second.shift <= here))
         continue;
@@ -284,8 +291,22 @@ bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, 
     }
   }
   std::sort(throats.begin(), throats.end());  // images stand elsewhere in the full network
+  return throats;
+}
+
+}  // namespace
+
+bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
+          PoreNetwork& network) {
+  network = {};
+  Folding folding;
+  if (!find_places(all, spheres, spacing, folding)) return false;
+  for (int c = 0; c < all.cells(); ++c)
+    if (folding.needed[all.cell_pore[c]] && !is_settled(all, images, spheres, c)) return false;
+  if (!repeats(all, images.spheres, folding.home, folding.places)) return false;
+  const std::vector<FoldedThroat> throats = fold_throats(all, folding);
   std::vector<int> home_cell(all.cells(), -1);
-  copy_pores_and_cells(all, home, home_cell, network);
+  copy_pores_and_cells(all, folding.home, home_cell, network);
   copy_throats(all, throats, home_cell, spheres, network);
   find_hidden(images, spheres, network);
   return true;

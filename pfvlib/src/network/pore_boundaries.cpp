@@ -38,7 +38,7 @@ void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNet
     if (contact.face != static_cast<int>(patch.face)) continue;
     const InFace place = in_face(patch, network, contact.pore);
     if (within(place)) {
-      contact.boundary = 6 + number;
+      contact.boundary = patch_number(number);
       any = true;
     }
     const double distance = (place.place - 0.5 * (place.lower + place.upper)).norm();
@@ -47,7 +47,7 @@ void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNet
       nearest = &contact;
     }
   }
-  if (!any && nearest) nearest->boundary = 6 + number;
+  if (!any && nearest) nearest->boundary = patch_number(number);
 }
 
 /// The region of each pore, or -1.
@@ -96,17 +96,17 @@ void give_to_regions(std::vector<PoreBoundaries::Contact>& contacts, const PoreN
 }  // namespace
 
 std::string boundary_name(const Box& box, int number) {
-  if (number < 6) return std::string("face ") + name_of(static_cast<Face>(number));
+  if (number < face_count) return std::string("face ") + name_of(static_cast<Face>(number));
   if (number >= first_region(box))
     return "region " + std::to_string(number - first_region(box) + 1);
-  return "patch " + std::to_string(number - 5) + " on face " +
-         name_of(box.patches[number - 6].face);
+  return "patch " + std::to_string(number - face_count + 1) + " on face " +
+         name_of(box.patches[number - face_count].face);
 }
 
 PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Box& box) {
   PoreBoundaries result;
   for (int pore = 0; pore < network.pores(); ++pore)
-    for (int face = 0; face < 6; ++face)
+    for (int face = 0; face < face_count; ++face)
       if (network.pore_faces[pore] >> face & 1) result.contacts.push_back({pore, face, face});
   for (std::size_t i = 0; i < box.patches.size(); ++i)
     give_to_patch(result.contacts, network, box, static_cast<int>(i));

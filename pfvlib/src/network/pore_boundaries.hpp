@@ -9,7 +9,7 @@
 
 namespace pfv {
 
-/// Where pores meet the box and its regions. Boundary number f < 6 is face f, then come the patches,
+/// Where pores meet the box and its regions. Boundary number f < face_count is face f, then come the patches,
 /// then the regions.
 struct PoreBoundaries {
   static constexpr int inside = -1;  ///< in the place of a face: a pore's part in its region
@@ -23,13 +23,14 @@ struct PoreBoundaries {
 /// Which face or patch each boundary pore belongs to; geometry only, so values may change later.
 PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Box& box);
 
+inline int patch_number(std::size_t patch) { return face_count + static_cast<int>(patch); }
+inline int first_region(const Box& box) { return patch_number(box.patches.size()); }
 inline int boundary_count(const Box& box) {
-  return static_cast<int>(6 + box.patches.size() + box.regions.size());
+  return first_region(box) + static_cast<int>(box.regions.size());
 }
-inline int first_region(const Box& box) { return static_cast<int>(6 + box.patches.size()); }
 inline const Boundary& boundary_of(const Box& box, int number) {
-  if (number < 6) return box.faces[number].boundary;
-  if (number < first_region(box)) return box.patches[number - 6].boundary;
+  if (number < face_count) return box.faces[number].boundary;
+  if (number < first_region(box)) return box.patches[number - face_count].boundary;
   return box.regions[number - first_region(box)].boundary;
 }
 /// "face zlo", "patch 2 on face zhi", "region 1": for messages.

@@ -60,7 +60,7 @@ constexpr int refinement = 8, coarsest = 64;
 /// `info` of a vertex is its sphere's place in `order`, or a wall.
 Regular build(const Spheres& spheres, const std::vector<Vertex>& order) {
   Regular regular;
-  for (int face = 0; face < 6; ++face)
+  for (int face = 0; face < face_count; ++face)
     if (!spheres.periodic[face / 2])
       regular.insert(wall_site(spheres, face))->info() = wall_vertex(face);
   const int count = spheres.size();
@@ -159,7 +159,7 @@ Triangulation triangulate(const Spheres& spheres) {
   const Regular regular = build(spheres, order);
   Triangulation result;
   const auto periodic = std::count(spheres.periodic.begin(), spheres.periodic.end(), true);
-  const auto walls = static_cast<std::size_t>(6 - 2 * periodic);
+  const auto walls = static_cast<std::size_t>(face_count - 2 * periodic);
   if (regular.number_of_vertices() < static_cast<std::size_t>(spheres.size()) + walls) {
     refuse_equal_centres(spheres);
     result.hidden = hidden_spheres(regular, order, spheres);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/conductances.hpp"
 
+#include "geometry/pi.hpp"
 #include "physics/open_throat.hpp"
 
 #include <Eigen/Core>
@@ -12,8 +13,6 @@
 namespace pfv {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// R_h beyond this many facet sizes sqrt(S) resists nothing in either case, but spreads the
 /// conductances beyond what double precision can factor (spheres 1e4 times smaller than a pore).

@@ -233,7 +233,7 @@ class RowPores {
 /// The pattern of S: each row's pores, ascending.
 void find_pattern(ForceMatrix& matrix, const Makings& m, Team& team) {
   const CornerLists lists(m);
-  const int rows = m.spheres + 6, pieces = team.threads();
+  const int rows = m.spheres + face_count, pieces = team.threads();
   const auto bound = [&](int number) {
     return static_cast<int>(static_cast<std::int64_t>(rows) * number / pieces);
   };
@@ -349,7 +349,7 @@ Loads gradient_forces(const PoreNetwork& network, const Spheres& vertices, const
                       const ViscousShares& shares, int spheres, ForceParts parts,
                       const Eigen::Vector3d& gradient) {
   const Makings makings{network, vertices, throats, shares, spheres, parts};
-  Loads loads = Loads::Zero(6, spheres + 6);
+  Loads loads = no_motion(spheres);
   ThroatLoads loads_of_throat(makings);
   std::vector<Vector6d> own;
   for (int t = 0; t < network.throats(); ++t) {

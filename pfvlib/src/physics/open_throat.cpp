@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/open_throat.hpp"
 
+#include "geometry/pi.hpp"
 #include "network/facets.hpp"
 
 #include <Eigen/Core>
@@ -12,7 +13,6 @@ namespace pfv {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double half_open_gap = 0.18;       // in sums of radii
 constexpr double openness_power = 0.8;
 constexpr double even_gap = 1e-3;            // w is linear below: round-off opens nothing

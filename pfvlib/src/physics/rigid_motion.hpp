@@ -16,11 +16,9 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Motion = Matrix6Xd;
 using Loads = Matrix6Xd;
 
-inline constexpr Eigen::Index face_columns = static_cast<Eigen::Index>(all_faces.size());
-
-inline Eigen::Index spheres_in(const Motion& motion) { return motion.cols() - face_columns; }
+inline Eigen::Index spheres_in(const Motion& motion) { return motion.cols() - face_count; }
 /// Zeros for so many spheres and the faces.
-inline Matrix6Xd no_motion(Eigen::Index spheres) { return Matrix6Xd::Zero(6, spheres + face_columns); }
+inline Matrix6Xd no_motion(Eigen::Index spheres) { return Matrix6Xd::Zero(6, spheres + face_count); }
 
 /// Motion of a face of `box`; the box's own corner may have moved on from `origin`.
 inline Vector6d motion_of(const FaceCondition& face, int axis, const Eigen::Vector3d& origin) {

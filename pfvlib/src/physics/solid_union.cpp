@@ -2,6 +2,7 @@
 #include "physics/solid_union.hpp"
 
 #include "geometry/ball_sections.hpp"
+#include "geometry/pi.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 namespace pfv {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Orthonormal axes towards an edge, a facet and a cell that hold one sphere; false where they are
 /// degenerate (the orthoscheme then has no volume).

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/sphere_stresses.hpp"
 
+#include "geometry/pi.hpp"
 #include "geometry/solid_angle.hpp"
 #include "physics/pore_velocities.hpp"
 #include "physics/macroscopic_gradient.hpp"
@@ -11,8 +12,6 @@
 namespace pfv {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Integral of n n^T over the spherical triangle of three directions. The surface divergence of n_i
 /// e_j (projected) is delta_ij - 3 n_i n_j, so that the integral is the solid angle's third plus a

@@ -143,11 +143,11 @@ void share(const ForceMatrix& forces, const SumOrder& order, const Motion& motio
 
 SumOrder sum_order(const ForceMatrix& forces, const Packing::Ids& ids, int pores, const Team& team) {
   SumOrder order;
-  const int spheres = forces.rows() - 6;
+  const int spheres = forces.rows() - face_count;
   if (!std::is_sorted(ids.data(), ids.data() + spheres)) {
     order.rows.resize(forces.rows());
     std::iota(order.rows.begin(), order.rows.end(), 0);
-    std::sort(order.rows.begin(), order.rows.end() - 6,
+    std::sort(order.rows.begin(), order.rows.end() - face_count,
               [&](int a, int b) { return ids[a] < ids[b]; });
   }
   if (team.threads() == 1) return order;

@@ -20,7 +20,7 @@ bool same_kinds(const Box& a, const Box& b) {
         a.patches[i].rectangle != b.patches[i].rectangle ||
         a.patches[i].boundary.kind != b.patches[i].boundary.kind)
       return false;
-  for (int f = 0; f < 6; ++f)
+  for (int f = 0; f < face_count; ++f)
     if (a.faces[f].wall != b.faces[f].wall ||
         a.faces[f].boundary.kind != b.faces[f].boundary.kind)
       return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the settings of a flow exclude, each once.
 #include "pfv/settings.hpp"
-#include "problem/solver_traits.hpp"
+#include "problem/solver_abilities.hpp"
 #include "text/number_text.hpp"
 
 #include <limits>
@@ -39,7 +39,7 @@ struct Rule {
 
 // Broken by what was said: the message says which of the two to change.
 const Rule rules[]{
-    {[](const Settings& s) { return s.options.rebuild_lag > 0 && !traits_of(s.options.solver).background; },
+    {[](const Settings& s) { return s.options.rebuild_lag > 0 && !abilities_of(s.options.solver).factors_beside_steps; },
      "the solver {solver} does not factor in the background: use the solver {background}, or set rebuild_lag to 0"},
     {[](const Settings& s) {
        return s.options.rebuild_lag > 0 && s.options.ordering == OrderingKind::metis;
@@ -102,7 +102,7 @@ std::string filled_in(std::string message, const Settings& settings) {
     if (const std::size_t at = message.find(blank); at != std::string::npos) message.replace(at, blank.size(), text);
   };
   fill("{solver}", name_of(resolved(settings.options.solver)));
-  fill("{background}", solvers_with(&SolverTraits::background));
+  fill("{background}", solvers_with(&SolverAbilities::factors_beside_steps));
   return message;
 }
 
@@ -110,7 +110,7 @@ std::string filled_in(std::string message, const Settings& settings) {
 void check_readers(const Settings& settings) {
   for (const Setting& setting : all_settings()) {
     const bool model = reads(settings.model, setting);
-    const bool solver = !setting.solvers || traits_of(settings.options.solver).*setting.solvers;
+    const bool solver = !setting.solvers || abilities_of(settings.options.solver).*setting.solvers;
     if ((model && solver) || !is_said(settings, setting)) continue;
     const std::string rest =
         " takes no " + setting.noun + ": leave `" + setting.name + ' ' + setting.text(settings) + "` away, or use the ";
@@ -138,7 +138,7 @@ void check(const Settings& settings) {
   for (const Setting& setting : all_settings()) setting.check(settings);
   name_of(settings.options.outside);
   name_of(settings.options.strain_measure);
-  check(settings.options.solver, settings.options.ordering);
+  check_solver(settings.options.solver, settings.options.ordering);
   check_readers(settings);
   for (const Rule& rule : rules)
     if (rule.broken(settings)) throw InputError(filled_in(rule.message, settings));

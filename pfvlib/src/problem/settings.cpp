@@ -2,7 +2,7 @@
 // The table of settings: how each is written, where it goes, what it may be and who reads it.
 #include "pfv/settings.hpp"
 
-#include "problem/solver_traits.hpp"
+#include "problem/solver_abilities.hpp"
 #include "text/number_text.hpp"
 
 namespace pfv {
@@ -126,7 +126,7 @@ Setting choice(Setting setting, const char* noun, Place<Part, Enum> place) {
   return setting;
 }
 
-Setting of_solvers(Setting setting, bool SolverTraits::*trait) {
+Setting of_solvers(Setting setting, bool SolverAbilities::*trait) {
   setting.solvers = trait;
   return setting;
 }
@@ -287,13 +287,13 @@ std::vector<Setting> of_solver() {
       of_solvers(number(row("Solver", "tolerance", "residual over right-hand side where the solver ends", both,
                             any_model),
                         "tolerance", "T", "", demands::part, option(&Options::tolerance)),
-                 &SolverTraits::iterative),
+                 &SolverAbilities::is_iterative),
       of_solvers(choice(row("Solver", "precision",
                             "how the solver keeps its factor: mixed has half as much to read a step and solves to a "
                             "residual of 1e-9",
                             both, any_model),
                         "choice of precision", option(&Options::precision)),
-                 &SolverTraits::mixed_precision),
+                 &SolverAbilities::mixed_precision),
       number(row("Solver", "threads", "threads that share a rebuild or step, 1 to 64; they change no result", both,
                  any_model),
              "number of threads", "N", "", demands::threads, option(&Options::threads)),

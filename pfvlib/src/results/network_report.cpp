@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/network_report.hpp"
 
+#include "problem/solver_abilities.hpp"
+
 #include <algorithm>
 
 namespace pfv {
@@ -47,6 +49,7 @@ Report network_report(BuiltNetwork& built, const Problem& problem, const Solutio
   add_permeability(report, built, problem, solution, totals, balance.throat_fluxes, solves);
   report.solver = built.kept.solver->name();
   report.ordering = name_of(resolved(options.solver, options.ordering));
+  report.solver_made_of = made_of(options.solver, options.ordering);
   report.conductance = name_of(options.conductance);
   report.faces = balance.faces;
   report.openings = openings_of(solution.box, parts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only translation unit that includes Trilinos.
+// With tacho_cholesky.cpp the only translation unit that includes Trilinos.
 #include "solve/amesos2_solver.hpp"
 
 #ifdef PFV_WITH_MUMPS
@@ -9,9 +9,11 @@
 #include <Teuchos_DefaultMpiComm.hpp>
 #include <iostream>
 #endif
-#include "solve/amesos2_cholmod.hpp"
+#include "solve/amesos2_cholesky.hpp"
 #include "solve/checked_solver.hpp"
-#include "solve/ordering.hpp"
+#include "solve/fill_reducing_ordering.hpp"
+#include "problem/solver_abilities.hpp"
+#include "sparse/sparse_error.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_CrsMatrix.hpp>
@@ -121,15 +123,27 @@ Teuchos::RCP<Matrix> tpetra_pattern(const SymmetricMatrix& matrix,
   return Teuchos::rcp(new Matrix(local, map, map, map, map));
 }
 
+/// Null for the solvers that Amesos2 has itself.
+std::shared_ptr<CholeskyFactor> cholesky_factor(SolverKind solver, Precision precision) {
+  switch (solver) {
+    case SolverKind::supernodal: return make_supernodal_cholesky(precision);
+    case SolverKind::cholmod: return make_cholmod_cholesky();
+    case SolverKind::tacho: return make_tacho_cholesky();
+    default: return nullptr;
+  }
+}
+
 class Amesos2Solver final : public CheckedSolver {
  public:
   Amesos2Solver(SolverKind solver, OrderingKind ordering, Precision precision,
                 std::shared_ptr<Team> team)
       : CheckedSolver(solver),
-        ordering_(ordering),
+        ordering_(ordering == OrderingKind::automatic && solver == SolverKind::tacho
+                      ? resolved(solver, ordering)
+                      : ordering),
         is_mixed_(precision == Precision::mixed),
         team_(std::move(team)),
-        factor_(std::make_shared<CholmodFactor>(is_mixed_)) {}
+        factor_(cholesky_factor(solver, precision)) {}
   ~Amesos2Solver() override {
     const Turn turn(trilinos_mutex);
     amesos2_ = {};
@@ -139,8 +153,8 @@ class Amesos2Solver final : public CheckedSolver {
   void share_with(std::shared_ptr<Team> team) override {
     team_ = std::move(team);
     const Turn turn(trilinos_mutex);
-    if (kind() == SolverKind::cholmod && !amesos2_.is_null())
-      Teuchos::rcp_dynamic_cast<CholmodSupernodal<Matrix, Vector>>(amesos2_)->share_with(team_);
+    if (factor_ && !amesos2_.is_null())
+      Teuchos::rcp_dynamic_cast<Amesos2Cholesky<Matrix, Vector>>(amesos2_)->share_with(team_);
   }
   Amesos2Solver(const Amesos2Solver&) = delete;
   Amesos2Solver& operator=(const Amesos2Solver&) = delete;
@@ -151,7 +165,7 @@ class Amesos2Solver final : public CheckedSolver {
   void analyze_pattern(const SymmetricMatrix& matrix,
                        const Eigen::Matrix3Xd& coordinates) override {
     std::vector<int> permutation;
-    if (kind() == SolverKind::cholmod)
+    if (factor_)
       permutation = fill_reducing_ordering(ordering_, matrix, coordinates, *team_);
     const Turn turn(trilinos_mutex);
     amesos2_ = {};
@@ -160,8 +174,8 @@ class Amesos2Solver final : public CheckedSolver {
     solution_ = Teuchos::rcp(new Vector(matrix_->getDomainMap(), 1));
     if (kind() == SolverKind::klu2) {
       amesos2_ = Amesos2::create<Matrix, Vector>("KLU2", matrix_);
-    } else if (kind() == SolverKind::cholmod) {
-      amesos2_ = Teuchos::rcp(new CholmodSupernodal<Matrix, Vector>(
+    } else if (factor_) {
+      amesos2_ = Teuchos::rcp(new Amesos2Cholesky<Matrix, Vector>(
           matrix_, std::move(permutation), factor_, team_));
       if (is_mixed_) row_begin_ = matrix.row_begin;
     } else {
@@ -184,9 +198,25 @@ class Amesos2Solver final : public CheckedSolver {
     std::copy(matrix.value.begin(), matrix.value.end(),
               matrix_->getLocalMatrixDevice().values.data());
 #ifdef PFV_WITH_MUMPS
-    if (kind() == SolverKind::mumps) return factor_with_mumps();
+    if (kind() == SolverKind::mumps) {
+      factor_with_mumps();
+      return refuse_lost_pressures(matrix);
+    }
 #endif
     amesos2_->numericFactorization();
+    if (kind() == SolverKind::klu2 || kind() == SolverKind::tacho) refuse_lost_pressures(matrix);
+  }
+
+  /// These solvers stop at a pivot that is 0 (or negative), and do not tell one that is nothing but
+  /// rounding. Pressures that nothing determines are equal in each group of pores: then the solution of
+  /// A x = A 1 is not 1.
+  void refuse_lost_pressures(const SymmetricMatrix& matrix) {
+    constexpr double lost_digits = 1e-3;
+    Eigen::VectorXd x(size());
+    solve_once(multiply(matrix, Eigen::VectorXd::Ones(size())), x);
+    Eigen::Index row = 0;
+    const double error = (x.array() - 1.0).abs().maxCoeff(&row);
+    if (!(error < lost_digits)) throw NotPositiveDefinite(static_cast<int>(row));
   }
 
   void solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
@@ -257,7 +287,7 @@ class Amesos2Solver final : public CheckedSolver {
   OrderingKind ordering_;
   bool is_mixed_;
   std::shared_ptr<Team> team_;
-  std::shared_ptr<CholmodFactor> factor_;  // of cholmod; its memory serves one matrix after the other
+  std::shared_ptr<CholeskyFactor> factor_;  // or null; its memory serves one matrix after the other
   std::vector<int> row_begin_;  // of mixed precision, as is what follows
   Eigen::VectorXd residual_, correction_;
   Teuchos::RCP<Matrix> matrix_;

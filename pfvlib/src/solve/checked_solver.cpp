@@ -2,6 +2,7 @@
 #include "solve/checked_solver.hpp"
 
 #include "pfv/error.hpp"
+#include "sparse/sparse_error.hpp"
 
 #include <cmath>
 
@@ -45,6 +46,11 @@ void CheckedSolver::guarded(const char* phase_name, const Phase& phase) const {
     phase();
   } catch (const Error&) {
     throw;
+  } catch (const NotPositiveDefinite& error) {
+    fail(std::string(error.what()) + ": nothing determines the pressure of a group of pores, or a "
+         "conductance is negative; impose a pressure on a face or patch that the group reaches");
+  } catch (const SparseError& error) {
+    fail(error.what());
   } catch (const std::bad_alloc&) {
     fail(what() + "ran out of memory; use fewer spheres or more memory");
   } catch (const std::exception& error) {

@@ -38,7 +38,7 @@ void add_row(YieldingRows& rows, std::vector<YieldingRows::Entry>& entries) {
 
 YieldingRows yielding_rows(const Unknowns& unknowns, const ForceMatrix& forces, const Bases& bases,
                            const Matrix6Xd& yielding) {
-  const int spheres = forces.rows() - 6;
+  const int spheres = forces.rows() - face_count;
   YieldingRows rows;
   rows.of_unknown.resize(unknowns.count);
   std::vector<YieldingRows::Entry> entries;
@@ -80,28 +80,18 @@ bool yields_to(const Isolated& isolated, const Unknowns& unknowns, const Yieldin
   });
 }
 
-}  // namespace
-
-ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
-                                 const ForceMatrix& forces, const Bases& bases,
-                                 const Matrix6Xd& yielding) {
-  const YieldingRows rows = yielding_rows(unknowns, forces, bases, yielding);
-  const SymmetricMatrix& g = system.matrix;
-  ImplicitSystem result;
-  std::vector<double> pins(unknowns.count, 0.0);
-  for (const Isolated& isolated : system.isolated) {
-    if (yields_to(isolated, unknowns, rows))
-      pins[isolated.unknown] = isolated.pin;
-    else
-      result.isolated.push_back(isolated);
-  }
-  SymmetricMatrix& a = result.matrix;
+/// G + S^T B S without the pins, row by row.
+SymmetricMatrix sum_of(const SymmetricMatrix& g, const std::vector<double>& pins,
+                       const YieldingRows& rows) {
+  constexpr std::size_t denser = 14;  // entries than G, about
+  const int count = g.size();
+  SymmetricMatrix a;
   a.row_begin.reserve(g.row_begin.size());
-  a.column.reserve(14 * g.column.size());
-  a.value.reserve(14 * g.column.size());
-  std::vector<double> sum(unknowns.count, 0.0);
-  std::vector<int> touched, last_row(unknowns.count, -1);
-  for (int i = 0; i < unknowns.count; ++i) {
+  a.column.reserve(denser * g.column.size());
+  a.value.reserve(denser * g.column.size());
+  std::vector<double> sum(count, 0.0);
+  std::vector<int> touched, last_row(count, -1);
+  for (int i = 0; i < count; ++i) {
     touched.clear();
     const auto add = [&](int j, double value) {
       if (last_row[j] != i) {
@@ -123,6 +113,24 @@ ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& u
     }
     a.row_begin.push_back(static_cast<int>(a.column.size()));
   }
+  return a;
+}
+
+}  // namespace
+
+ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
+                                 const ForceMatrix& forces, const Bases& bases,
+                                 const Matrix6Xd& yielding) {
+  const YieldingRows rows = yielding_rows(unknowns, forces, bases, yielding);
+  ImplicitSystem result;
+  std::vector<double> pins(unknowns.count, 0.0);
+  for (const Isolated& isolated : system.isolated) {
+    if (yields_to(isolated, unknowns, rows))
+      pins[isolated.unknown] = isolated.pin;
+    else
+      result.isolated.push_back(isolated);
+  }
+  result.matrix = sum_of(system.matrix, pins, rows);
   return result;
 }
 

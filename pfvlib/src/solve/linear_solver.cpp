@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve/linear_solver.hpp"
 
-#include "pfv/error.hpp"
 #include "solve/amesos2_solver.hpp"
 #include "solve/iterative_solvers.hpp"
+#include "problem/solver_abilities.hpp"
 
 namespace pfv {
 
-Eigen::VectorXd multiply(const SymmetricMatrix& matrix, const Eigen::VectorXd& x) {
-  Eigen::VectorXd product(matrix.size());
-  for (int row = 0; row < matrix.size(); ++row) {
-    double sum = 0.0;
-    for (int k = matrix.row_begin[row]; k < matrix.row_begin[row + 1]; ++k) {
-      sum += matrix.value[k] * x[matrix.column[k]];
-    }
-    product[row] = sum;
-  }
-  return product;
-}
-
 std::unique_ptr<LinearSolver> make_solver(const Options& options, std::shared_ptr<Team> team) {
-  check(options.solver, options.ordering);
+  check_solver(options.solver, options.ordering);
   const SolverKind kind = resolved(options.solver);
   switch (kind) {
     case SolverKind::cg: return std::make_unique<ConjugateGradient>(options.tolerance);

@@ -3,33 +3,19 @@
 
 #include "parallel/team.hpp"
 #include "pfv/options.hpp"
-#include "problem/solver_traits.hpp"
+#include "sparse/symmetric_matrix.hpp"
 
 #include <Eigen/Core>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace pfv {
-
-/// Symmetric positive definite matrix in compressed rows: both triangles, diagonal present, columns
-/// sorted in each row.
-struct SymmetricMatrix {
-  std::vector<int> row_begin{0};  ///< n + 1
-  std::vector<int> column;
-  std::vector<double> value;
-
-  int size() const { return static_cast<int>(row_begin.size()) - 1; }
-};
-
-/// r = A x.
-Eigen::VectorXd multiply(const SymmetricMatrix& matrix, const Eigen::VectorXd& x);
 
 /// One solver. Call order: order, factor (again after new values on the same pattern),
 /// solve as often as there are right-hand sides. No unknowns are fine: nothing is done.
 /// Same matrix and b, same bytes. Prints nothing. Every method throws SolverError, one line with
 /// the solver's name: a call out of order, a matrix that is singular, not positive definite
-/// (cholmod) or not finite, a solution that is not finite, no memory.
+/// or not finite, a solution that is not finite, no memory.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
@@ -47,7 +33,7 @@ class LinearSolver {
 
 /// The solver that the options name (automatic choices are resolved), with its ordering, precision and
 /// tolerance. Throws InputError for a combination that makes no sense. `team` shares the work of
-/// cholmod; null: the caller's thread does them.
+/// supernodal; null: the caller's thread does them.
 std::unique_ptr<LinearSolver> make_solver(const Options& options,
                                           std::shared_ptr<Team> team = nullptr);
 /// The same with the other options as they are by default.

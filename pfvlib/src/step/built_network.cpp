@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/built_network.hpp"
 
+#include "geometry/pi.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace pfv {
-
-namespace {
-
-constexpr double pi = 3.14159265358979323846;
-
-}  // namespace
 
 Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built) {
   Eigen::Matrix3Xd places(3, built.unknowns.count);

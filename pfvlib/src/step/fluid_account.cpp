@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/fluid_account.hpp"
 
+#include "geometry/pi.hpp"
+
 #include <algorithm>
 #include <cstdint>
 #include <utility>
@@ -11,7 +13,6 @@ namespace pfv {
 namespace {
 
 double volume_of(double radius) {
-  constexpr double pi = 3.14159265358979323846;
   return 4.0 / 3.0 * pi * radius * radius * radius;
 }
 

@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 #include "physics/macroscopic_gradient.hpp"
+#include "problem/solver_abilities.hpp"
 #include "step/continuity.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"

@@ -26,7 +26,7 @@ Matrix6Xd inverse_roots(const BuiltNetwork& built, const Eigen::VectorXd& masses
     root.col(i).tail<3>().setConstant(
         1.0 / std::sqrt(inertia_of(mass, built.grains.spheres.radii[i])));
   }
-  const Eigen::Index packed = masses.size() - face_columns;
+  const Eigen::Index packed = masses.size() - face_count;
   for (const Face face : all_faces) {
     const int f = static_cast<int>(face);
     root(axis_of(face), spheres + f) = 1.0 / std::sqrt(masses[packed + f]);
@@ -59,7 +59,7 @@ double TimeStepLimit::of(BuiltNetwork& built, const Problem& problem, Eigen::Ind
   if (masses.size() != spheres)
     throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
                      std::to_string(spheres) + " spheres; give one a sphere");
-  Eigen::VectorXd all(spheres + face_columns);
+  Eigen::VectorXd all(spheres + face_count);
   all.head(spheres) = masses;
   for (const Face face : all_faces) {
     const int f = static_cast<int>(face);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/ordering.hpp"
+#include "sparse/ordering.hpp"
 
-#include "pfv/error.hpp"
-#include "solve/separator.hpp"
+#include "sparse/separator.hpp"
+#include "sparse/sparse_error.hpp"
 
 #include <algorithm>
 #include <camd.h>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace pfv {
@@ -232,7 +233,7 @@ std::vector<int> geometric_ordering(const SymmetricMatrix& matrix,
   std::vector<int> permutation(matrix.size());
   if (matrix.size() == 0) return permutation;
   if (coordinates.cols() != matrix.size()) {
-    throw SolverError("geometric: the ordering needs the place of each of " +
+    throw SparseError("geometric: the ordering needs the place of each of " +
                       std::to_string(matrix.size()) + " unknowns and was given " +
                       std::to_string(coordinates.cols()) + "; use the ordering metis");
   }
@@ -240,7 +241,7 @@ std::vector<int> geometric_ordering(const SymmetricMatrix& matrix,
   const int status = camd_order(matrix.size(), matrix.row_begin.data(), matrix.column.data(),
                                 permutation.data(), nullptr, nullptr, groups.data());
   if (status != CAMD_OK && status != CAMD_OK_BUT_JUMBLED) {
-    throw SolverError("geometric: minimum degree on " + std::to_string(matrix.size()) +
+    throw SparseError("geometric: minimum degree on " + std::to_string(matrix.size()) +
                       " unknowns failed with code " + std::to_string(status) +
                       "; use the ordering metis");
   }

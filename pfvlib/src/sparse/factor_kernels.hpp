@@ -3,13 +3,13 @@
 // held in registers. The order of the sums of an entry does not depend on the tile that it is in.
 #pragma once
 
+#include "sparse/instructions.hpp"
+
 #include <cstddef>
 #include <cstring>
 #include <vector>
 
 namespace pfv::kernels {
-
-#define PFV_INLINE inline __attribute__((always_inline))
 
 /// Columns that are eliminated together in registers.
 constexpr int strip_width = 8;
@@ -115,8 +115,6 @@ PFV_INLINE void eliminate(const Elimination& e) {
     }
   }
 }
-
-#undef PFV_INLINE
 
 /// The kernels for one set of instructions.
 struct FactorKernels {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/ordering.hpp"
+#include "sparse/ordering.hpp"
 
-#include "pfv/error.hpp"
+#include "sparse/sparse_error.hpp"
 
 #include <metis.h>
 #include <numeric>
+#include <string>
 
 namespace pfv {
 namespace {
@@ -30,22 +31,6 @@ Graph graph_of(const SymmetricMatrix& matrix) {
 
 }  // namespace
 
-std::vector<int> fill_reducing_ordering(OrderingKind kind, const SymmetricMatrix& matrix,
-                                        const Eigen::Matrix3Xd& coordinates, Team& team) {
-  if (kind == OrderingKind::automatic) {
-    kind = coordinates.cols() > 0 ? OrderingKind::geometric : OrderingKind::metis;
-  }
-  if (kind == OrderingKind::geometric) return geometric_ordering(matrix, coordinates, team);
-  if (kind == OrderingKind::metis) return metis_ordering(matrix);
-  return {};
-}
-
-std::vector<int> fill_reducing_ordering(OrderingKind kind, const SymmetricMatrix& matrix,
-                                        const Eigen::Matrix3Xd& coordinates) {
-  Team alone;
-  return fill_reducing_ordering(kind, matrix, coordinates, alone);
-}
-
 std::vector<int> metis_ordering(const SymmetricMatrix& matrix) {
   Graph graph = graph_of(matrix);
   std::vector<idx_t> permutation(matrix.size());
@@ -60,11 +45,11 @@ std::vector<int> metis_ordering(const SymmetricMatrix& matrix) {
       METIS_NodeND(&size, graph.row_begin.data(), graph.neighbour.data(), nullptr, nullptr,
                    permutation.data(), inverse.data());
   if (status == METIS_ERROR_MEMORY) {
-    throw SolverError("metis: out of memory while ordering " + std::to_string(matrix.size()) +
+    throw SparseError("metis: out of memory while ordering " + std::to_string(matrix.size()) +
                       " unknowns; use the ordering amd, which needs less, or fewer spheres");
   }
   if (status != METIS_OK) {
-    throw SolverError("metis: the ordering of " + std::to_string(matrix.size()) +
+    throw SparseError("metis: the ordering of " + std::to_string(matrix.size()) +
                       " unknowns failed with code " + std::to_string(status) +
                       "; use the ordering amd");
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/supernodal_solve.hpp"
+#include "sparse/supernodal_solve.hpp"
 
-#include "solve/panel_kernels.hpp"
+#include "sparse/panel_kernels.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -9,75 +9,54 @@
 namespace pfv {
 namespace {
 
-template <class Value>
-using Substitution = void (*)(const std::vector<Panel>& panels, const Value* values,
-                              const int* rows, double* y);
-
-#define PFV_INLINE inline __attribute__((always_inline))
-
 /// y = L^-1 y.
 template <class Value>
-PFV_INLINE void forward_panels(const std::vector<Panel>& panels, const Value* values,
-                               const int* rows, double* y) {
-  for (const Panel& panel : panels) {
-    kernels::with_columns(panel.columns, [&](auto columns) __attribute__((always_inline)) {
-      kernels::forward<columns>(values + panel.first_value, rows + panel.first_row, panel.rows,
-                                y + panel.first_column, y);
-    });
+struct ForwardPanels {
+  static PFV_INLINE void run(const std::vector<Panel>& panels, const Value* values, const int* rows,
+                             double* y) {
+    for (const Panel& panel : panels) {
+      kernels::with_columns(panel.columns, [&](auto columns) __attribute__((always_inline)) {
+        kernels::forward<columns>(values + panel.first_value, rows + panel.first_row, panel.rows,
+                                  y + panel.first_column, y);
+      });
+    }
   }
-}
+};
 
 /// y = L^-T y.
 template <class Value>
-PFV_INLINE void backward_panels(const std::vector<Panel>& panels, const Value* values,
-                                const int* rows, double* y) {
-  for (auto panel = panels.rbegin(); panel != panels.rend(); ++panel) {
-    kernels::with_columns(panel->columns, [&](auto columns) __attribute__((always_inline)) {
-      kernels::backward<columns>(values + panel->first_value, rows + panel->first_row,
-                                 panel->rows, y + panel->first_column, y);
-    });
+struct BackwardPanels {
+  static PFV_INLINE void run(const std::vector<Panel>& panels, const Value* values, const int* rows,
+                             double* y) {
+    for (auto panel = panels.rbegin(); panel != panels.rend(); ++panel) {
+      kernels::with_columns(panel->columns, [&](auto columns) __attribute__((always_inline)) {
+        kernels::backward<columns>(values + panel->first_value, rows + panel->first_row,
+                                   panel->rows, y + panel->first_column, y);
+      });
+    }
   }
-}
-
-#undef PFV_INLINE
+};
 
 template <class Value>
-void forward_portably(const std::vector<Panel>& panels, const Value* values, const int* rows,
-                      double* y) {
-  forward_panels(panels, values, rows, y);
-}
+struct Substitutions {
+  using Function = void (*)(const std::vector<Panel>& panels, const Value* values, const int* rows,
+                            double* y);
+  Function forward, backward;
 
-template <class Value>
-void backward_portably(const std::vector<Panel>& panels, const Value* values, const int* rows,
-                       double* y) {
-  backward_panels(panels, values, rows, y);
-}
+  template <class Set>
+  struct For {
+    template <template <class> class Kernel>
+    static constexpr Function function =
+        Set::template call<Kernel<Value>, const std::vector<Panel>&, const Value*, const int*, double*>;
+    static Substitutions make() { return {function<ForwardPanels>, function<BackwardPanels>}; }
+  };
 
-#ifdef __x86_64__
-template <class Value>
-__attribute__((target("avx2,fma"))) void forward_with_avx2(const std::vector<Panel>& panels,
-                                                           const Value* values, const int* rows,
-                                                           double* y) {
-  forward_panels(panels, values, rows, y);
-}
-
-template <class Value>
-__attribute__((target("avx2,fma"))) void backward_with_avx2(const std::vector<Panel>& panels,
-                                                            const Value* values, const int* rows,
-                                                            double* y) {
-  backward_panels(panels, values, rows, y);
-}
-#endif
-
-/// The same code for the instructions that this processor has.
-template <class Value>
-std::pair<Substitution<Value>, Substitution<Value>> substitutions_of_this_processor() {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return {forward_with_avx2<Value>, backward_with_avx2<Value>};
-#endif
-  return {forward_portably<Value>, backward_portably<Value>};
-}
+  static const Substitutions& of_this_processor() {
+    static const Substitutions fastest =
+        kernels::usable_tables<For>(kernels::Within256Bits()).front();
+    return fastest;
+  }
+};
 
 /// Copies columns[0 ... `panel.columns`) of height `height`, from the panel's diagonal down.
 void pack_panel(const Panel& panel, const double* columns, std::ptrdiff_t height, double* value) {
@@ -215,8 +194,7 @@ void SupernodalSolve::solve(const double* b, double* x, Team& team) {
 
 template <class Value>
 void SupernodalSolve::substitute(const Value* values, const double* b, double* x, Team& team) {
-  static const auto substitutions = substitutions_of_this_processor<Value>();
-  const auto forward = substitutions.first, backward = substitutions.second;
+  const auto [forward, backward] = Substitutions<Value>::of_this_processor();
   const auto parts = static_cast<int>(subtrees_.size());
   const auto above = static_cast<int>(top_columns_.size());
   team.run(parts, [&](int number) {

@@ -2,7 +2,7 @@
 // Included by amesos2_solver.cpp alone: it draws in Trilinos.
 #pragma once
 
-#include "solve/cholmod_factor.hpp"
+#include "solve/cholesky_factor.hpp"
 
 #include <Amesos2.hpp>
 #include <Amesos2_SolverCore_def.hpp>  // the library instantiates it for its own solvers only
@@ -25,20 +25,19 @@ class OutsideTrilinos {
   OutsideTrilinos& operator=(const OutsideTrilinos&) = delete;
 };
 
-/// CHOLMOD's supernodal LL^T as an Amesos2 solver: Debian's Amesos2 is built without it. For one
-/// rank, where matrix and vectors are used where they lie, without a copy. Its callers hold
-/// `trilinos_mutex`.
+/// A Cholesky factorisation of another code as an Amesos2 solver. For one rank, where matrix and vectors
+/// are used where they lie, without a copy. Its callers hold `trilinos_mutex`.
 template <class Matrix, class Vector>
-class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, Vector> {
-  using Base = Amesos2::SolverCore<pfv::CholmodSupernodal, Matrix, Vector>;
+class Amesos2Cholesky : public Amesos2::SolverCore<Amesos2Cholesky, Matrix, Vector> {
+  using Base = Amesos2::SolverCore<pfv::Amesos2Cholesky, Matrix, Vector>;
   friend Base;
 
  public:
-  static constexpr const char* name = "CholmodSupernodal";
+  static constexpr const char* name = "Cholesky";
 
-  /// `permutation`: see CholmodFactor::analyze.
-  CholmodSupernodal(Teuchos::RCP<const Matrix> matrix, std::vector<int> permutation,
-                    std::shared_ptr<CholmodFactor> factor, std::shared_ptr<Team> team)
+  /// `permutation`: see CholeskyFactor::analyze.
+  Amesos2Cholesky(Teuchos::RCP<const Matrix> matrix, std::vector<int> permutation,
+                  std::shared_ptr<CholeskyFactor> factor, std::shared_ptr<Team> team)
       : Base(matrix, Teuchos::null, Teuchos::null),
         permutation_(std::move(permutation)),
         team_(std::move(team)),
@@ -55,17 +54,13 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
 
   int symbolicFactorization_impl() {
     const SymmetricRows matrix = rows();
-    const OutsideTrilinos working;
-    factor_->analyze(matrix, permutation_);
+    work([&] { factor_->analyze(matrix, permutation_); });
     return 0;
   }
 
   int numericFactorization_impl() {
     const SymmetricRows matrix = rows();
-    {
-      const OutsideTrilinos working;
-      factor_->factorize(matrix, *team_);
-    }
+    work([&] { factor_->factorize(matrix, *team_); });
     this->setNnzLU(2 * factor_->entries());
     return 0;
   }
@@ -73,8 +68,7 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   int solve_impl(const Teuchos::Ptr<Vectors> x, const Teuchos::Ptr<const Vectors> b) const {
     const double* from = Pointer::get_pointer_to_vector(b);
     double* to = Pointer::get_pointer_to_vector(x);
-    const OutsideTrilinos working;
-    factor_->solve(from, to, *team_);
+    work([&] { factor_->solve(from, to, *team_); });
     return 0;
   }
 
@@ -99,6 +93,13 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
     return true;
   }
 
+  template <class Task>
+  void work(const Task& task) const {
+    if (!factor_->bears_other_threads()) return task();
+    const OutsideTrilinos outside;
+    task();
+  }
+
   SymmetricRows rows() const {
     return {static_cast<int>(this->globalNumRows_), row_begin_.data(), column_.data(),
             value_.data()};
@@ -109,14 +110,14 @@ class CholmodSupernodal : public Amesos2::SolverCore<CholmodSupernodal, Matrix, 
   Kokkos::View<int*, HostSpace> row_begin_;
   Kokkos::View<int*, HostSpace> column_;
   Kokkos::View<double*, HostSpace> value_;
-  std::shared_ptr<CholmodFactor> factor_;
+  std::shared_ptr<CholeskyFactor> factor_;
 };
 
 }  // namespace pfv
 
 namespace Amesos2 {
 template <>
-struct solver_traits<pfv::CholmodSupernodal> {
+struct solver_traits<pfv::Amesos2Cholesky> {
   using supported_scalars = Meta::make_list1<double>;
 };
 }  // namespace Amesos2

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/supernodal_factor.hpp"
+#include "sparse/supernodal_factor.hpp"
 
 #include <algorithm>
 #include <cmath>

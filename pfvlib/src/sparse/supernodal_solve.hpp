@@ -2,8 +2,8 @@
 #pragma once
 
 #include "parallel/team.hpp"
-#include "solve/elimination_tree.hpp"
-#include "solve/supernodal_factor.hpp"
+#include "sparse/elimination_tree.hpp"
+#include "sparse/supernodal_factor.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cholmod.h>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace pfv {
 
-/// The supernodes of a symbolic factor of CHOLMOD: columns first_column[s] ... first_column[s + 1] - 1
+/// The supernodes of a symbolic factor: columns first_column[s] ... first_column[s + 1] - 1
 /// share the rows rows[rows_begin[s]] ... rows[rows_begin[s + 1] - 1], ascending, the columns themselves
 /// first. They are postordered: those of a subtree of the elimination tree follow one another, its root
 /// last.
 struct Supernodes {
-  explicit Supernodes(const cholmod_factor& factor)
-      : count(static_cast<int>(factor.nsuper)),
-        columns(static_cast<int>(factor.n)),
-        first_column(static_cast<const int*>(factor.super)),
-        rows_begin(static_cast<const int*>(factor.pi)),
-        rows(static_cast<const int*>(factor.s)) {}
-
   int width(int s) const { return first_column[s + 1] - first_column[s]; }
   int height(int s) const { return rows_begin[s + 1] - rows_begin[s]; }
   /// Of L, the upper halves of the diagonal blocks left out.
@@ -28,10 +20,10 @@ struct Supernodes {
     return w * (w + 1) / 2 + w * (height(s) - w);
   }
 
-  int count, columns;
-  const int* first_column;
-  const int* rows_begin;
-  const int* rows;
+  int count = 0, columns = 0;
+  const int* first_column = nullptr;
+  const int* rows_begin = nullptr;
+  const int* rows = nullptr;
 };
 
 /// Subtrees of the elimination tree, which share no column, for threads to take; of about equal work.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/elimination_tree.hpp"
+#include "sparse/elimination_tree.hpp"
 
 #include <algorithm>
 

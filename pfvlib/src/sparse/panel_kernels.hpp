@@ -3,7 +3,8 @@
 // it lies in memory, so that memory bandwidth is what bounds them.
 #pragma once
 
-#include "solve/supernodal_solve.hpp"
+#include "sparse/instructions.hpp"
+#include "sparse/supernodal_solve.hpp"
 
 #include <cstdint>
 #include <cstring>
@@ -15,8 +16,6 @@ namespace pfv {
 constexpr int fetch_ahead = 384;
 
 namespace kernels {
-
-#define PFV_INLINE inline __attribute__((always_inline))
 
 using Block = double __attribute__((vector_size(block_rows * sizeof(double))));
 
@@ -117,8 +116,6 @@ PFV_INLINE void with_columns(int columns, const Kernel& kernel) {
     default: return kernel(std::integral_constant<int, 8>{});
   }
 }
-
-#undef PFV_INLINE
 
 }  // namespace kernels
 }  // namespace pfv

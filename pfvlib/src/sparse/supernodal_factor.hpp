@@ -2,22 +2,15 @@
 #pragma once
 
 #include "parallel/team.hpp"
-#include "solve/elimination_tree.hpp"
-#include "solve/factor_kernels.hpp"
+#include "sparse/elimination_tree.hpp"
+#include "sparse/factor_kernels.hpp"
+#include "sparse/symmetric_matrix.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace pfv {
-
-/// Non-owning view of a symmetric matrix in compressed rows with both triangles, columns sorted.
-struct SymmetricRows {
-  int size = 0;
-  const int* row_begin = nullptr;
-  const int* column = nullptr;
-  const double* value = nullptr;  ///< may be null where only the pattern is wanted
-};
 
 /// Columns of a supernode that are factored together: a dense column-major piece of L, the rows of
 /// the diagonal first.

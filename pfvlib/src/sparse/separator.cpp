@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/separator.hpp"
+#include "sparse/separator.hpp"
 
 #include <algorithm>
 #include <cstdlib>

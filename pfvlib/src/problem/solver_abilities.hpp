@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/options.hpp"
+
+#include <string>
+
+namespace pfv {
+
+/// What a solver is made of and what it can do: the one place that says so. Every check of the options
+/// and every error about them reads it.
+struct SolverAbilities {
+  SolverKind solver;
+  bool is_built;              ///< whether this build has it
+  const char* analysed;       ///< the code that makes the symbolic factorisation; null: there is none
+  const char* factored;       ///< the code of the numeric factorisation, or of the preconditioner
+  const char* solved;         ///< the code of the triangular solves, or of the iterations
+  OrderingKind own_ordering;  ///< what `automatic` stands for; `automatic`: it tells nobody
+  bool takes_orderings;       ///< geometric, metis and amd; if not, its own at most
+  bool shares_work;           ///< threads share factorisation and solves
+  bool factors_beside_steps;  ///< networks may be rebuilt in the background
+  bool mixed_precision;
+  bool is_iterative;  ///< ends at a tolerance
+};
+
+/// Of a solver, `automatic` among them. Throws InputError for one that options.hpp does not name.
+const SolverAbilities& abilities_of(SolverKind solver);
+
+/// "cg or gauss_seidel": the solvers of this build with an ability, for messages and tables.
+std::string solvers_with(bool SolverAbilities::*ability);
+
+/// Throws InputError for a solver that this build lacks and for an ordering that the solver does not take.
+void check_solver(SolverKind solver, OrderingKind ordering);
+
+/// What `automatic` stands for where the places of the unknowns are given.
+SolverKind resolved(SolverKind solver);
+OrderingKind resolved(SolverKind solver, OrderingKind ordering);
+
+bool is_iterative(SolverKind solver);
+
+/// Which code ordered, analysed, factored and solved, in one line.
+std::string made_of(SolverKind solver, OrderingKind ordering);
+
+}  // namespace pfv
