@@ -267,15 +267,13 @@ bool modify_face(const std::string& keyword, Words& words, PfvSettings& settings
   return false;
 }
 
-/// What the fix was built for stays: it has no room for held loads, its flow no other strain.
+/// What the fix was built for stays: it has no room for held loads.
 void modify_setting(const pfv::Setting& setting, Words& words, PfvSettings& settings) {
   const PfvSettings before = settings;
   settings.given.erase(setting.name);
   pfv::read(setting, words, settings);
   if (settings.steps.couple_error && settings.steps.couple_error != before.steps.couple_error)
     words.fail("only a number of steps can be given here; give auto with the fix");
-  if (settings.options.strain_measure != before.options.strain_measure)
-    words.fail("only the strain can be given here; give mean with the fix");
 }
 
 }  // namespace

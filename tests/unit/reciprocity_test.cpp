@@ -79,7 +79,9 @@ TEST(Reciprocity, UniformExpansionGivesThreeTimesEachVolume) {
       for (int c = 0; c < s.network.cells(); ++c)
         if (pfv::is_wall(s.network.cell_vertices[c][3])) beside_wall[s.network.cell_pore[c]] = 1;
     for (int pore = 0; pore < s.network.pores(); ++pore)
-      if (!beside_wall[pore]) EXPECT_NEAR(rates[pore], volumes[pore], 1e-12 * mean_volume(s));
+      if (!beside_wall[pore]) {
+        EXPECT_NEAR(rates[pore], volumes[pore], 1e-12 * mean_volume(s));
+      }
   }
 }
 
