@@ -361,6 +361,7 @@ void FixPfv::advance() {
     if (mean) grains_.use_mean_velocities(last_grains_, elapsed_);
     flow_->set_box(box_);
     call_flow(elapsed_, true);
+    watch_time_step();
     if (mean || adapts()) last_grains_ = grains_.snapshot();
   });
   elapsed_ = 0.0;

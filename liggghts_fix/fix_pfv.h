@@ -20,6 +20,7 @@ FixStyle(pfv,FixPfv)
 
 #include "pfv/flow_model.hpp"
 #include "pfv/solve_interval.hpp"
+#include "pfv/time_step.hpp"
 
 #include "fix.h"
 
@@ -102,7 +103,9 @@ class FixPfv : public Fix {
   double flow_step() const;  ///< s, between two flow steps of a run
   double time_step_limit();
   void call_flow(double dt, bool commit);
+  pfv::TimeStepCheck look_at_time_step();
   void check_time_step();
+  void watch_time_step();
   void check_servos();
   std::string swinging_servo(int face, const PfvServoGain& servo, double resistance,
                              double swing) const;
@@ -153,6 +156,8 @@ class FixPfv : public Fix {
   std::optional<pfv::SolveInterval> interval_;
   PfvSnapshot last_grains_;
   bool cited_ = false;
+  bool warned_ = false;  // of the time step, in this run
+  std::int64_t looked_at_ = 0;  // retriangulations when the time step was looked at
 };
 
 template <typename Work>

@@ -39,18 +39,38 @@ void FixPfv::call_flow(double dt, bool commit) {
                   settings_.steps.safety, obstacle_});
 }
 
-/// Says where the time step stands, at the beginning of a run; rank 0.
-void FixPfv::check_time_step() {
-  if (!settings_.steps.time_step_check && !needs_forces()) return;
+/// Where the time step stands now; its warnings, once a run. Rank 0.
+pfv::TimeStepCheck FixPfv::look_at_time_step() {
   const pfv::TimeStepCheck check = pfv::check_time_step(*flow_, grains_.packing(), grains_.masses(),
                                                         pistons_, flow_step());
-  const std::string head = std::string("Fix pfv (id ") + id + "): ";
-  print(head + check.text() + "\n");
+  looked_at_ = flow_->retriangulations();
   const char* remedy = rigid_bodies_ ? " (rigid bodies have no other coupling)"
                                      : ", `coupling staged` or `coupling implicit`";
-  for (const std::string& warning :
-       pfv::warnings_of(check, settings_.steps.couple_every, settings_.steps.safety, remedy))
-    error->warning(FLERR, (head + warning).c_str());
+  const std::vector<std::string> warnings =
+      pfv::warnings_of(check, settings_.steps.couple_every, settings_.steps.safety, remedy);
+  if (!warned_)
+    for (const std::string& warning : warnings)
+      error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + warning).c_str());
+  warned_ = warned_ || !warnings.empty();
+  return check;
+}
+
+/// At the beginning of a run; rank 0.
+void FixPfv::check_time_step() {
+  warned_ = false;
+  if (!settings_.steps.time_step_check && !needs_forces()) return;
+  print("Fix pfv (id " + std::string(id) + "): " + look_at_time_step().text() + "\n");
+}
+
+/// Within a run: a packing that grows denser, or pores that close, bring the limit down. A look costs about as
+/// much as a network. Rank 0.
+void FixPfv::watch_time_step() {
+  constexpr std::int64_t networks_between = 20;
+  if (!settings_.steps.time_step_check || warned_ || settings_.model != pfv::Model::pores ||
+      flow_->coupling() != pfv::Coupling::explicit_step ||
+      flow_->retriangulations() - looked_at_ < networks_between)
+    return;
+  look_at_time_step();
 }
 
 }  // namespace LAMMPS_NS

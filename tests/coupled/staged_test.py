@@ -210,6 +210,16 @@ class Staged(SettledTest):
                          [1, 1])
         self.assertEqual([len(lines) for lines in said(0.5, "couple_every 3")], [1, 1])
 
+    def test_a_limit_that_falls_within_a_run_is_warned_of_once(self):
+        """Grains that swell by 0.025 % a step: a network a step, and the limit is looked at after 20."""
+        swelling = ("compute rad all property/atom radius\nvariable grown atom 2.0005*c_rad\n"
+                    "fix swell all adapt 1 atom diameter v_grown\nrun 45\n")
+        words = self.at_ratio(0.9, "retriangulate largest 1e-5")
+        warned = [line for line in self.liggghts(self.script(words, swelling)).splitlines()
+                  if "WARNING: Fix pfv" in line]
+        self.assertEqual(len(warned), 1, warned)
+        self.assertIn("times the limit of the explicit coupling", warned[0])
+
     def test_safety_must_be_positive(self):
         self.refuse("fix_modify flow safety 0\n", "safety")
 
