@@ -41,7 +41,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   global_freq = 1;
   peratom_flag = 1;
   size_peratom_cols = PfvGrainExchange::returned_width;
-  if (settings_.steps.couple_error) interval_.emplace(*settings_.steps.couple_error);
+  if (settings_.steps.couple_error) plan_.emplace(*settings_.steps.couple_error);
   peratom_freq = 1;
   restart_global = 1;
 }
@@ -321,11 +321,11 @@ void FixPfv::setup(int) {
     call_flow(flow_step(), false);
     if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
     check_time_step();
-    if (interval_) interval_->restart();
+    if (plan_) plan_->restart();
     left_.reset();
   });
-  plan_ = {};
-  begin_plan();
+  next_ = {};
+  if (adapts()) plan_next_solve(1);
   after_flow_call();
   apply_forces();
 }
@@ -375,7 +375,7 @@ void FixPfv::after_flow_call() {
     files_->write(*flow_, grains_.packing(), update->ntimestep);
   });
   grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{},
-                  comm->me == 0 && interval_ ? &interval_->held() : nullptr,
+                  comm->me == 0 && plan_ ? &plan_->interval().held() : nullptr,
                   per_atom_->array_atom, settings_.steps.couple_error.has_value());
 }
 
@@ -397,7 +397,7 @@ void FixPfv::push_meshes() {
   if (comm->me != 0 || !faces_.any_mesh()) return;
   std::array<Eigen::Vector3d, 6> forces = flow_->face_forces();
   if (const double trend = steps_of_trend(); trend != 0.0)
-    for (int f = 0; f < 6; ++f) forces[f] += trend * interval_->held().face_slope[f];
+    for (int f = 0; f < 6; ++f) forces[f] += trend * plan_->interval().held().face_slope[f];
   faces_.push_meshes(forces);
 }
 

@@ -19,7 +19,7 @@ FixStyle(pfv,FixPfv)
 #include "result_files.h"
 
 #include "pfv/flow_model.hpp"
-#include "pfv/solve_interval.hpp"
+#include "pfv/solve_plan.hpp"
 #include "pfv/time_step.hpp"
 
 #include "fix.h"
@@ -86,14 +86,7 @@ class FixPfv : public Fix {
   // when to solve the flow
   bool adapts() const;
   bool solve_due();
-  bool imposed_values_changed();
   double gross_motion() const;
-  bool grains_jumped();
-  int most_steps(int steps);
-  double load_beside_fluid(double on_meshes) const;
-  void begin_plan();
-  bool take_up_new_network(int steps);
-  void update_sensitivity(double motion);
   void plan_next_solve(int steps);
   double steps_of_trend() const;
 
@@ -101,7 +94,6 @@ class FixPfv : public Fix {
   void bind_coupling();
   bool needs_forces() const;
   double flow_step() const;  ///< s, between two flow steps of a run
-  double time_step_limit();
   void call_flow(double dt, bool commit);
   pfv::TimeStepCheck look_at_time_step();
   void check_time_step();
@@ -134,18 +126,7 @@ class FixPfv : public Fix {
   std::array<double, 6> last_positions_{};
   std::int64_t steps_ = 0, solves_ = 0;  // of all runs
 
-  // of `couple_every auto`
-  struct Plan {
-    int steps = 1;        // from the last solve to the next
-    double offset = 0.0;  // from the instant that its loads belong to until the last solve, steps
-    double sensitivity = 0.0;   // of the loads to the grains' motion, over the load
-    bool solved = false;        // within this run
-    double strain = 0.0;        // after the last solve; rank 0
-    double gross_motion = 0.0;  // at the last solve
-    double limit = -1.0;        // of the explicit coupling, s; negative: not known; rank 0
-    std::int64_t networks = 0;  // when it was asked for
-    std::int64_t last_network = 0;  // of the last solve
-  } plan_;
+  pfv::NextSolve next_;  // of `couple_every auto`
 
   // rank 0 only
   std::unique_ptr<pfv::FlowModel> flow_;
@@ -153,7 +134,7 @@ class FixPfv : public Fix {
   std::optional<pfv::FlowState> restored_;
   std::optional<PfvLeftState> left_;  // by the last run, as far as it is known; none within a run
   std::optional<pfv::Report> report_;
-  std::optional<pfv::SolveInterval> interval_;
+  std::optional<pfv::SolvePlan> plan_;
   PfvSnapshot last_grains_;
   bool cited_ = false;
   bool warned_ = false;  // of the time step, in this run

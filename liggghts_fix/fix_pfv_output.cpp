@@ -27,7 +27,7 @@ double FixPfv::quantity(int n) {
     case 2: return report().mass_error;
     case 3: return report().force_balance_error;
     case 4: return static_cast<double>(flow_->retriangulations());
-    case 5: return time_step_limit();
+    case 5: return flow_->time_step_limit(grains_.masses(), pistons_);
     case 6: return flow_->mean_pressure();
     case 7: return static_cast<double>(flow_->hidden_or_outside());
     case 8: return static_cast<double>(flow_->stages());
@@ -81,11 +81,11 @@ void FixPfv::print_phases() {
                 done.residual, done.mass_error, done.force_balance_error);
   text += line;
   text += "solver " + done.solver + ": " + done.solver_made_of + "\n";
-  if (interval_) {
+  if (plan_) {
     std::snprintf(line, sizeof line,
                   "couple_every auto: solved at %lld of %lld steps, estimated error %.2g %% of the load\n",
                   static_cast<long long>(solves_), static_cast<long long>(steps_),
-                  100.0 * interval_->largest_error());
+                  100.0 * plan_->interval().largest_error());
     text += line;
   }
   if (settings_.options.rebuild_lag > 0) {

@@ -28,8 +28,6 @@ bool FixPfv::needs_forces() const { return settings_.steps.coupling != pfv::Coup
 
 double FixPfv::flow_step() const { return settings_.steps.couple_every * update->dt; }
 
-double FixPfv::time_step_limit() { return flow_->time_step_limit(grains_.masses(), pistons_); }
-
 /// One call of the flow, over `dt` (s); rank 0.
 void FixPfv::call_flow(double dt, bool commit) {
   const pfv::GrainDynamics dynamics =

@@ -16,6 +16,8 @@
 #include "pfv/packing.hpp"
 #include "pfv/report.hpp"
 #include "pfv/settings.hpp"
+#include "pfv/solve_interval.hpp"
+#include "pfv/solve_plan.hpp"
 #include "pfv/time_step.hpp"
 #include "pfv/union_parts.hpp"
 #include "pfv/version.hpp"
