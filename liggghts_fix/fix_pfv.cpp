@@ -173,7 +173,7 @@ void FixPfv::update_bound_numbers() {
     bound_number(settings_, binding) = input->variable->compute_equal(index);
   }
   modify->addstep_compute(update->ntimestep +
-                          (adapts() ? 1 : std::max(1, settings_.steps.couple_every - steps_since_flow_)));
+                          (adapts() ? 1 : std::max(1, settings_.steps.couple_every - since_.steps)));
 }
 
 /// Boundary conditions and velocities of the faces; their positions follow in place_faces.
@@ -249,10 +249,10 @@ void FixPfv::begin_anew_where_moved() {
   if (!moved) return;
   bodies_.forget();
   read_host();
-  steps_since_flow_ = 0;
-  elapsed_ = 0.0;
-  last_positions_ = faces_.positions();
-  last_grains_ = grains_.snapshot();
+  since_.steps = 0;
+  since_.time = 0.0;
+  since_.face_positions = faces_.positions();
+  since_.grains = grains_.snapshot();
 }
 
 /// What the next run compares with. The grains of the last flow step stay as they were gathered.
@@ -312,14 +312,14 @@ void FixPfv::setup(int) {
   read_host();
   begin_anew_where_moved();
   box_ = current_box();
-  if (steps_since_flow_ == 0) last_positions_ = faces_.positions();
+  if (since_.steps == 0) since_.face_positions = faces_.positions();
   on_root([&] {
     place_faces(box_);
     warn_of_empty_box();
     prepare_flow(box_);
     check_servos();
     call_flow(flow_step(), false);
-    if (steps_since_flow_ == 0) last_grains_ = grains_.snapshot();
+    if (since_.steps == 0) since_.grains = grains_.snapshot();
     check_time_step();
     if (plan_) plan_->restart();
     left_.reset();
@@ -331,9 +331,9 @@ void FixPfv::setup(int) {
 }
 
 void FixPfv::post_force(int) {
-  elapsed_ += update->dt;
-  ++steps_since_flow_;
-  ++steps_;
+  since_.time += update->dt;
+  ++since_.steps;
+  ++taken_.steps;
   if (solve_due()) advance();
   apply_forces();
   push_meshes();
@@ -342,9 +342,9 @@ void FixPfv::post_force(int) {
 void FixPfv::advance() {
   if (gravity() != settings_.fluid.gravity)
     stop(FLERR, "gravity has changed within a run; change it between runs");
-  const int steps = steps_since_flow_;
-  steps_since_flow_ = 0;
-  ++solves_;
+  const int steps = since_.steps;
+  since_.steps = 0;
+  ++taken_.solves;
   read_host();
   box_ = current_box();
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
@@ -354,17 +354,17 @@ void FixPfv::advance() {
     for (int number = 0; number < 6; ++number)
       if (settings_.sources[number].kind == PfvFaceSource::Kind::mesh)
         box_.faces[number].velocity =
-            (faces_.positions()[number] - last_positions_[number]) / elapsed_;
-  last_positions_ = faces_.positions();
+            (faces_.positions()[number] - since_.face_positions[number]) / since_.time;
+  since_.face_positions = faces_.positions();
   on_root([&] {
     place_faces(box_);
-    if (mean) grains_.use_mean_velocities(last_grains_, elapsed_);
+    if (mean) grains_.use_mean_velocities(since_.grains, since_.time);
     flow_->set_box(box_);
-    call_flow(elapsed_, true);
+    call_flow(since_.time, true);
     watch_time_step();
-    if (mean || adapts()) last_grains_ = grains_.snapshot();
+    if (mean || adapts()) since_.grains = grains_.snapshot();
   });
-  elapsed_ = 0.0;
+  since_.time = 0.0;
   if (adapts()) plan_next_solve(steps);
   after_flow_call();
 }
@@ -423,9 +423,9 @@ void FixPfv::write_restart(FILE* file) {
   begin_anew_where_moved();
   PfvRestartRecord record;
   record.step = update->ntimestep;
-  record.steps_since_flow = steps_since_flow_;
-  record.elapsed = elapsed_;
-  record.last_positions = last_positions_;
+  record.steps_since_flow = since_.steps;
+  record.elapsed = since_.time;
+  record.last_positions = since_.face_positions;
   on_root([&] {
     if (flow_) {
       place_faces(box_);
@@ -437,7 +437,7 @@ void FixPfv::write_restart(FILE* file) {
     } else if (restored_) {
       record.flow = *restored_;
     }
-    if (settings_.steps.couple_every > 1 || settings_.steps.couple_error) record.last_grains = last_grains_;
+    if (settings_.steps.couple_every > 1 || settings_.steps.couple_error) record.last_grains = since_.grains;
     record.written = files_->written();
     const std::vector<double> data = pack(record);
     const int bytes = static_cast<int>(data.size() * sizeof(double));
@@ -450,11 +450,11 @@ void FixPfv::write_restart(FILE* file) {
 void FixPfv::restart(char* bytes) {
   everywhere([&] {
     PfvRestartRecord record = unpack(bytes);
-    steps_since_flow_ = record.steps_since_flow;
-    elapsed_ = record.elapsed;
-    last_positions_ = record.last_positions;
+    since_.steps = record.steps_since_flow;
+    since_.time = record.elapsed;
+    since_.face_positions = record.last_positions;
     if (!files_) return;  // not rank 0
-    last_grains_ = std::move(record.last_grains);
+    since_.grains = std::move(record.last_grains);
     restored_ = std::move(record.flow);
     files_->resume(record.step, restored_->time, std::move(record.written));
   });

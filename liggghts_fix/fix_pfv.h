@@ -120,12 +120,15 @@ class FixPfv : public Fix {
   class FixPropertyAtom* per_atom_ = nullptr;
   pfv::Box box_;
 
-  // since the last flow step
-  int steps_since_flow_ = 0;
-  double elapsed_ = 0.0;
-  std::array<double, 6> last_positions_{};
-  std::int64_t steps_ = 0, solves_ = 0;  // of all runs
-
+  struct SinceSolve {
+    int steps = 0;
+    double time = 0.0;                       // s
+    std::array<double, 6> face_positions{};  // at it
+    PfvSnapshot grains;                      // at it; rank 0
+  } since_;
+  struct Taken {
+    std::int64_t steps = 0, solves = 0;  // of all runs
+  } taken_;
   pfv::NextSolve next_;  // of `couple_every auto`
 
   // rank 0 only
@@ -135,10 +138,11 @@ class FixPfv : public Fix {
   std::optional<PfvLeftState> left_;  // by the last run, as far as it is known; none within a run
   std::optional<pfv::Report> report_;
   std::optional<pfv::SolvePlan> plan_;
-  PfvSnapshot last_grains_;
-  bool cited_ = false;
-  bool warned_ = false;  // of the time step, in this run
-  std::int64_t looked_at_ = 0;  // retriangulations when the time step was looked at
+  struct Said {
+    bool citation = false;
+    bool time_step = false;  // warned of, in this run
+    std::int64_t network = 0;  // retriangulations when the time step was looked at
+  } said_;
 };
 
 template <typename Work>

@@ -14,12 +14,12 @@ namespace LAMMPS_NS {
 bool FixPfv::adapts() const { return settings_.steps.couple_error.has_value(); }
 
 bool FixPfv::solve_due() {
-  if (!adapts()) return steps_since_flow_ >= settings_.steps.couple_every;
+  if (!adapts()) return since_.steps >= settings_.steps.couple_every;
   const double tolerance = *settings_.steps.couple_error;
-  return steps_since_flow_ >= next_.steps ||
+  return since_.steps >= next_.steps ||
          (!settings_.bindings.empty() &&
           pfv::imposed_values_differ(current_box(), box_, tolerance)) ||
-         (steps_since_flow_ >= 2 && next_.has_jumped(gross_motion(), tolerance));
+         (since_.steps >= 2 && next_.has_jumped(gross_motion(), tolerance));
 }
 
 /// Sum of |v| r² of the flow's grains, m³/s; collective.
@@ -50,7 +50,7 @@ void FixPfv::plan_next_solve(int steps) {
 
 /// Steps from the instant that the loads of the last solve belong to until now; 0 where they are held.
 double FixPfv::steps_of_trend() const {
-  return adapts() && next_.steps > 1 ? next_.offset + steps_since_flow_ : 0.0;
+  return adapts() && next_.steps > 1 ? next_.offset + since_.steps : 0.0;
 }
 
 }  // namespace LAMMPS_NS

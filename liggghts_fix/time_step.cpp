@@ -41,21 +41,21 @@ void FixPfv::call_flow(double dt, bool commit) {
 pfv::TimeStepCheck FixPfv::look_at_time_step() {
   const pfv::TimeStepCheck check = pfv::check_time_step(*flow_, grains_.packing(), grains_.masses(),
                                                         pistons_, flow_step());
-  looked_at_ = flow_->retriangulations();
+  said_.network = flow_->retriangulations();
   const char* remedy = rigid_bodies_ ? " (rigid bodies have no other coupling)"
                                      : ", `coupling staged` or `coupling implicit`";
   const std::vector<std::string> warnings =
       pfv::warnings_of(check, settings_.steps.couple_every, settings_.steps.safety, remedy);
-  if (!warned_)
+  if (!said_.time_step)
     for (const std::string& warning : warnings)
       error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + warning).c_str());
-  warned_ = warned_ || !warnings.empty();
+  said_.time_step = said_.time_step || !warnings.empty();
   return check;
 }
 
 /// At the beginning of a run; rank 0.
 void FixPfv::check_time_step() {
-  warned_ = false;
+  said_.time_step = false;
   if (!settings_.steps.time_step_check && !needs_forces()) return;
   print("Fix pfv (id " + std::string(id) + "): " + look_at_time_step().text() + "\n");
 }
@@ -64,9 +64,9 @@ void FixPfv::check_time_step() {
 /// much as a network. Rank 0.
 void FixPfv::watch_time_step() {
   constexpr std::int64_t networks_between = 20;
-  if (!settings_.steps.time_step_check || warned_ || settings_.model != pfv::Model::pores ||
+  if (!settings_.steps.time_step_check || said_.time_step || settings_.model != pfv::Model::pores ||
       flow_->coupling() != pfv::Coupling::explicit_step ||
-      flow_->retriangulations() - looked_at_ < networks_between)
+      flow_->retriangulations() - said_.network < networks_between)
     return;
   look_at_time_step();
 }

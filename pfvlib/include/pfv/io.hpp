@@ -27,6 +27,11 @@ void write_forces(const std::string& path, const Packing& packing, const Forces&
 /// The report as JSON, keys as in `Report`; absent values are null.
 void write_report(const std::string& path, const Report& report);
 
+/// The report as a few lines of text: phases with their times and counts, sizes, balances, which code solved.
+std::string summary_of(const Report& report);
+/// The papers to cite for the pore network.
+const char* citation();
+
 /// Further fields of spheres, one column a sphere of the packing; an empty one is not written.
 struct SphereFields {
   Eigen::Matrix3Xd displacement;    ///< m
