@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a host leaves to the library: the coupling of each step, its warnings, and when to solve next.
+#include "pfv/pfv.hpp"
+#include "support/boxes.hpp"
+#include "support/packings.hpp"
+
+#include <gtest/gtest.h>
+
+namespace pfv {
+namespace {
+
+using ::support::expect_line;
+using ::support::refusal;
+
+/// Grains between two open faces, and all that a step may have to know of them.
+struct Bed {
+  PackingArrays packing = dense_packing(60);
+  Eigen::VectorXd masses =
+      2600.0 * 4.0 / 3.0 * 3.14159265358979 * packing.radii.array().cube();
+  Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
+  Flow flow;
+
+  explicit Bed(Fluid fluid = {})
+      : flow(::support::pressure_box(Face::zlo, 1.0, Face::zhi, 0.0, Wall::symmetry), fluid) {
+    packing.velocities = 1e-6 * packing.positions;
+    flow.evaluate(packing.view(), 1.0);
+  }
+  double limit() { return flow.time_step_limit(masses); }
+  GrainDynamics dynamics() const {
+    return {{masses.data(), masses.size()}, {none.data(), 3, none.cols()}};
+  }
+  Coupling chosen(double dt) {
+    const GrainDynamics known = dynamics();
+    flow.advance(packing.view(), dt, Step::trial(Coupling::automatic, known));
+    return flow.coupling();
+  }
+};
+
+TEST(AutomaticCoupling, IsExplicitBelowTheLimitWithTheSameBytes) {
+  Bed bed, plain;
+  const double dt = 0.9 * bed.limit();
+  EXPECT_EQ(bed.chosen(dt), Coupling::explicit_step);
+  const GrainDynamics known = bed.dynamics();
+  const Forces& forces =
+      bed.flow.advance(bed.packing.view(), dt, Step::with(Coupling::automatic, known));
+  EXPECT_EQ(forces.total, plain.flow.step(plain.packing.view(), dt).total);
+  EXPECT_EQ(bed.flow.time(), dt);
+}
+
+TEST(AutomaticCoupling, TakesStagesNearTheLimitAndTheDenserFactorFarBeyond) {
+  Bed bed;
+  EXPECT_EQ(bed.chosen(2.0 * bed.limit()), Coupling::staged);
+  EXPECT_GT(bed.flow.stages(), 1);
+  EXPECT_EQ(bed.chosen(2000.0 * bed.limit()), Coupling::implicit);
+  EXPECT_EQ(bed.flow.time(), 0.0);  // nothing was committed
+}
+
+TEST(AutomaticCoupling, WhatStandsAgainstLongStepsIsSaidWhereTheyAreNeeded) {
+  Bed bed;
+  const GrainDynamics known = bed.dynamics();
+  Step step = Step::trial(Coupling::automatic, known);
+  step.obstacle = "the host has no forces to tell";
+  EXPECT_NO_THROW(bed.flow.advance(bed.packing.view(), 0.5 * bed.limit(), step));
+  const double dt = 5.0 * bed.limit();
+  expect_line(refusal([&] { bed.flow.advance(bed.packing.view(), dt, step); }), "no forces to tell");
+  expect_line(refusal([&] {
+                bed.flow.advance(bed.packing.view(), dt, {Coupling::staged, nullptr, true, 1.0, {}});
+              }),
+              "Step::dynamics");
+}
+
+TEST(TimeStepCheck, WarnsOfStepsBeyondTheLimitAndOfHeldPressuresBehindPistons) {
+  Bed bed;
+  std::array<Piston, 6> pistons{};
+  const auto check = [&](double ratio) {
+    return check_time_step(bed.flow, bed.packing.view(), bed.masses, pistons,
+                           ratio * bed.flow.time_step_limit(bed.masses, pistons));
+  };
+  EXPECT_TRUE(warnings_of(check(0.9), 1, 1.0, "").empty());
+  EXPECT_EQ(warnings_of(check(0.9), 1, 0.8, "").size(), 1u);
+  const auto beyond = warnings_of(check(2.0), 4, 1.0, ", or long steps");
+  ASSERT_EQ(beyond.size(), 1u);
+  EXPECT_NE(beyond[0].find("is 2 times the limit"), std::string::npos) << beyond[0];
+  EXPECT_NE(beyond[0].find(", or long steps"), std::string::npos);
+  Fluid water;
+  water.bulk_modulus = 2e9;
+  Bed sealed(water);
+  pistons[5].mass = 1.0;
+  const TimeStepCheck held =
+      check_time_step(sealed.flow, sealed.packing.view(), sealed.masses, pistons, 1e-12);
+  EXPECT_EQ(held.pistons, 1);
+  EXPECT_EQ(warnings_of(held, 2, 1e9, "").size(), 1u);
+  EXPECT_TRUE(warnings_of(held, 1, 1e9, "").empty());
+}
+
+/// Steps until the next solve, after `solves` of grains that keep still.
+int interval_after(int solves, Fluid fluid, double step_of_limit) {
+  Bed bed(fluid);
+  bed.packing.velocities.setZero();
+  const double step = step_of_limit * bed.limit();
+  const std::array<Piston, 6> pistons{};
+  SolvePlan plan(1e-3);
+  plan.restart();
+  for (int solve = 0; solve < solves; ++solve) {
+    const int steps = plan.next().steps;
+    bed.flow.step(bed.packing.view(), steps * step);
+    plan.take(bed.flow, {bed.packing.view(), bed.masses, pistons, steps, step, 0.0, 0.0, 0.01});
+  }
+  return plan.next().steps;
+}
+
+TEST(SolvePlan, WhereNothingChangesTheIntervalGrowsUpToTheLimit) {
+  EXPECT_GT(interval_after(5, Fluid{}, 1e-6), 5);
+  EXPECT_EQ(interval_after(20, Fluid{}, 0.1), 7);  // 0.7 of the limit
+}
+
+TEST(SolvePlan, NothingIsHeldInACompressibleFluid) {
+  Fluid water;
+  water.bulk_modulus = 2e9;
+  EXPECT_EQ(interval_after(5, water, 1e-6), 1);
+}
+
+TEST(SolvePlan, AMotionThatTheLoadsFollowIsAJumpBeyondTenTolerances) {
+  const NextSolve next{10, 0.0, 0.5, 1.0};
+  EXPECT_FALSE(next.has_jumped(1.019, 1e-3));
+  EXPECT_TRUE(next.has_jumped(1.021, 1e-3));
+  EXPECT_TRUE(next.has_jumped(0.979, 1e-3));
+}
+
+TEST(SolvePlan, ValuesOfBoundariesAreComparedWithTheLargest) {
+  const Box then = ::support::pressure_box(Face::zlo, 100.0, Face::zhi, 0.0, Wall::symmetry);
+  Box now = then;
+  now[Face::zhi].boundary.value = 0.09;
+  EXPECT_FALSE(imposed_values_differ(now, then, 1e-3));
+  now[Face::zhi].boundary.value = 0.11;
+  EXPECT_TRUE(imposed_values_differ(now, then, 1e-3));
+}
+
+}  // namespace
+}  // namespace pfv
