@@ -144,10 +144,10 @@ def consolidation(name, *words):
     """p(H/2)/load and U over T_v of a coupled oedometer run, and its CPU seconds."""
     sys.path.insert(0, str(ROOT / "inputs" / "oedometer"))
     import analyse
-    import run
+    import oedometer
     out = KEPT / "oedometer" / name
     out.parent.mkdir(parents=True, exist_ok=True)
-    run.run(run.parse([*words, f"OUT={out}"]))
+    oedometer.run(oedometer.parse([*words, f"OUT={out}"]))
     records = analyse.Run(out)
     times = np.linspace(0.02, 2.0, 400)
     return {"cpu": records.figures["cpu_coupled"], "retriangulations": records.retriangulations,

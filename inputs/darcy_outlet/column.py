@@ -14,7 +14,7 @@ sys.path[:0] = [str(SCENE.parent / "oedometer"), str(SCENE.parent / "common")]
 import numpy as np  # noqa: E402
 
 import analyse as terzaghi_analysis  # noqa: E402
-import run as oedometer  # noqa: E402
+import oedometer  # noqa: E402
 import scene  # noqa: E402
 import terzaghi  # noqa: E402
 from plotting import plt, save_figure  # noqa: E402

@@ -11,20 +11,20 @@ import sys
 import numpy as np
 
 import analyse
-import run
+import oedometer
 import terzaghi
 from plotting import plt, save_figure
 
 SAMPLES = [(300, 1), (1000, 1), (1000, 2), (1000, 3), (1000, 4), (2000, 1), (5000, 1), (5000, 2)]
 THRESHOLDS = [0.0001, 0.001, 0.01]
-FIGURES = run.SCENE.parents[1] / "doc" / "figures"
+FIGURES = oedometer.SCENE.parents[1] / "doc" / "figures"
 
 
 def one_run(name, *words):
     """Summary and curves of one run."""
-    base = run.SCENE / "post" / name
+    base = oedometer.SCENE / "post" / name
     if not base.with_name(f"{name}_summary.json").exists():
-        run.run(run.parse([*words, f"OUT=post/{name}"]))
+        oedometer.run(oedometer.parse([*words, f"OUT=post/{name}"]))
     records = analyse.Run(base)
     return {**records.figures, **analyse.compare(records), "T": records.T, "p": records.middle(),
             "T_lid": records.T_lid, "U": records.settlement()}
@@ -33,7 +33,7 @@ def one_run(name, *words):
 def same_sample(name, source):
     """Gives the run `name` the sample, dry test and permeability of the run `source`."""
     for ending in (".dump", ".restart", "_loaded.dump", "_steady.csv", "_measured.json"):
-        shutil.copy(run.SCENE / "post" / (source + ending), run.SCENE / "post" / (name + ending))
+        shutil.copy(oedometer.SCENE / "post" / (source + ending), oedometer.SCENE / "post" / (name + ending))
 
 
 def sample_table(runs):
@@ -98,15 +98,15 @@ def study():
         same_sample(name, "N1000_1")
         thresholds.append(one_run(name, "KEEP=1", f"RETRIANGULATE={strain}"))
     text = sample_table(samples) + "\n" + threshold_table(thresholds)
-    (run.SCENE / "post" / "study.md").write_text(text)
+    (oedometer.SCENE / "post" / "study.md").write_text(text)
     print(text)
     draw_samples(samples)
     for name in ("curves", "isochrones", "stress"):
-        shutil.copy(run.SCENE / "post" / f"N5000_1_{name}.png", FIGURES / f"oedometer_{name}.png")
+        shutil.copy(oedometer.SCENE / "post" / f"N5000_1_{name}.png", FIGURES / f"oedometer_{name}.png")
 
 
 if __name__ == "__main__":
     try:
         study()
-    except run.Failure as failure:
+    except oedometer.Failure as failure:
         sys.exit(f"oedometer: {failure}")

@@ -13,7 +13,7 @@ sys.path[:0] = [str(HERE.parent / "oedometer"), str(HERE.parent / "common")]
 import numpy as np
 
 import analyse
-import run as oedometer
+import oedometer
 import scene
 import terzaghi
 from plotting import plt, save_figure

@@ -10,7 +10,7 @@ from pathlib import Path
 SCENE = Path(__file__).resolve().parent
 sys.path.insert(0, str(SCENE.parent / "common"))
 sys.path.insert(0, str(SCENE.parent / "oedometer"))
-import run as oedometer  # noqa: E402
+import oedometer  # noqa: E402
 import scene  # noqa: E402
 
 DENSITY = 2600.0
