@@ -50,6 +50,26 @@ class CellList {
   std::vector<int> first_, next_;
 };
 
+/// Each sphere in turn is pushed away from those that it overlaps, and back into the unit cube.
+void push_apart(PackingArrays& packing) {
+  Eigen::Matrix3Xd& x = packing.positions;
+  const CellList cells(x, 1.3 * (2.0 * packing.radii.maxCoeff()));
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    const double r = packing.radii[k];
+    const Eigen::Vector3d place = x.col(k);
+    cells.for_each_near(place, [&](int l) {
+      if (l == k) return;
+      const Eigen::Vector3d apart = x.col(k) - x.col(l);
+      const double distance = apart.norm(), overlap = r + packing.radii[l] - distance;
+      if (overlap <= 0.0 || distance == 0.0) return;
+      const Eigen::Vector3d push = 0.5 * overlap / distance * apart;
+      x.col(k) += push;
+      x.col(l) -= push;
+    });
+    x.col(k) = x.col(k).cwiseMax(r).cwiseMin(1.0 - r);
+  }
+}
+
 }  // namespace
 
 PackingArrays dense_packing(int spheres, double solid_fraction, double spread, unsigned seed,
@@ -72,26 +92,7 @@ PackingArrays dense_packing(int spheres, double solid_fraction, double spread, u
   }
   constexpr double ball = 4.0 / 3.0 * pi;
   packing.radii *= std::cbrt(solid_fraction / (ball * packing.radii.array().cube().sum()));
-
-  Eigen::Matrix3Xd& x = packing.positions;
-  const double reach = 2.0 * packing.radii.maxCoeff();
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    const CellList cells(x, 1.3 * reach);
-    for (int k = 0; k < spheres; ++k) {
-      const double r = packing.radii[k];
-      const Eigen::Vector3d place = x.col(k);
-      cells.for_each_near(place, [&](int l) {
-        if (l == k) return;
-        const Eigen::Vector3d apart = x.col(k) - x.col(l);
-        const double distance = apart.norm(), overlap = r + packing.radii[l] - distance;
-        if (overlap <= 0.0 || distance == 0.0) return;
-        const Eigen::Vector3d push = 0.5 * overlap / distance * apart;
-        x.col(k) += push;
-        x.col(l) -= push;
-      });
-      x.col(k) = x.col(k).cwiseMax(r).cwiseMin(1.0 - r);
-    }
-  }
+  for (int sweep = 0; sweep < sweeps; ++sweep) push_apart(packing);
   return packing;
 }
 
