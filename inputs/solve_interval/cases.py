@@ -91,8 +91,8 @@ def loaded_oedometer(part):
 
 CASES = {"oedometer": oedometer, "compression": compression, "outlet": outlet, "seepage": seepage,
          "settling": settling}
-STRAINED = {"oedometer, 200 kPa": loaded_oedometer, "compression": compression, "seepage": seepage,
-            "settling": settling, "two sizes": two_sizes}
+STRAINED = {"oedometer, 200 kPa": loaded_oedometer, "compression": compression, "outlet": outlet,
+            "seepage": seepage, "settling": settling, "two sizes": two_sizes}
 
 
 def run(case, words, name, renumbered=False):

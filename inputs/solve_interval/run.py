@@ -11,6 +11,7 @@ import sys
 
 import cases
 import scene
+from page_table import Table, put_into
 
 PAGE = cases.SCENE.parents[1] / "doc" / "couple_every.md"
 FINE = "retriangulate mean 0.002"
@@ -19,17 +20,6 @@ FIXED = (1, 2, 5, 10, 20, 50, 100)
 TOLERANCES = (0.03, 0.1, 0.3, 1)  # % of the load
 THRESHOLDS = ["0.01", "0.02", "0.05", "0.1", "mean 0.005", "mean 0.01", "mean 0.02", "mean 0.04"]
 HELD = {"oedometer, 200 kPa": 1}  # steps that the networks' study solves the flow for; 5 elsewhere
-
-
-class Table:
-    def __init__(self, *columns):
-        self.lines = []
-        self.row(*columns)
-        self.lines.append("|" + "---|" * len(columns))
-
-    def row(self, *cells):
-        self.lines.append("| " + " | ".join(str(cell) for cell in cells) + " |")
-        print(self.lines[-1], flush=True)
 
 
 def percent(part):
@@ -146,13 +136,6 @@ def old_defaults(names):
 TABLES = {"intervals": intervals, "strains": strains, "old_defaults": old_defaults}
 
 
-def write_page(name, lines):
-    text = PAGE.read_text()
-    begin, end = f"<!-- table {name} -->\n", "<!-- end of table -->"
-    start = text.index(begin) + len(begin)
-    PAGE.write_text(text[:start] + "\n".join(lines) + "\n" + text[text.index(end, start):])
-
-
 def work(words):
     write = words[:1] == ["write"]
     names = [word for word in words[write:] if word in TABLES] or list(TABLES)
@@ -167,7 +150,7 @@ def work(words):
         print(f"{name}:", flush=True)
         lines = TABLES[name](chosen)
         if write:
-            write_page(name, lines)
+            put_into(PAGE, name, lines)
     return True
 
 

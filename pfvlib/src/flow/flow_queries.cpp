@@ -20,7 +20,6 @@ BuiltNetwork& Flow::Parts::network() const {
 const Balance& Flow::Parts::balance() {
   if (!kept_balance)
     kept_balance = balance_of(network(), solution, work.counts.correction_solve);
-  network();
   return *kept_balance;
 }
 
