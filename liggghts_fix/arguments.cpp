@@ -54,9 +54,30 @@ std::optional<Boundary> take_boundary(Words& words, PfvBinding binding, PfvSetti
   return std::nullopt;
 }
 
-void take_source(Words& words, PfvFaceSource& source) {
+Eigen::Vector3d take_vector(Words& words, const char* what) {
+  Eigen::Vector3d vector;
+  for (double& component : vector) component = words.number(what, demands::finite);
+  return vector;
+}
+
+/// `plane X Y Z NX NY NZ`, `extent AXIS lo|hi`: what a container has in place of the box's forms.
+void take_container_plane(Words& words, PfvFaceSource& source) {
+  const Eigen::Vector3d point = take_vector(words, "a point of the plane");
+  const Eigen::Vector3d inward = take_vector(words, "the plane's normal into the fluid");
+  if (!(inward.norm() > 0.0)) words.fail("the plane's normal has no length");
+  source.surface = pfv::Surface::plane(-inward, point);
+}
+void take_container_extent(Words& words, PfvFaceSource& source) {
+  const int axis = words.axis();
+  const bool upper = words.take("hi");
+  if (!upper && !words.take("lo")) words.fail("extent AXIS must be followed by lo or hi");
+  source.surface.normal = (upper ? 1.0 : -1.0) * Eigen::Vector3d::Unit(axis);
+}
+
+void take_source(Words& words, PfvFaceSource& source, bool container) {
   if (words.take("plane")) {
     source.kind = Source::plane;
+    if (container) return take_container_plane(words, source);
     source.plane = words.number("the plane's position", demands::finite);
   } else if (words.take("wall")) {
     source.kind = Source::wall;
@@ -66,8 +87,11 @@ void take_source(Words& words, PfvFaceSource& source) {
     source.fix_id = words.word("the ID of a fix mesh/surface");
   } else if (words.take("extent")) {
     source.kind = Source::extent;
+    if (container) take_container_extent(words, source);
   } else {
-    words.fail("the face's name must be followed by plane X, wall FIX_ID, mesh FIX_ID or extent");
+    words.fail(container ? "the face's name must be followed by plane X Y Z NX NY NZ, wall FIX_ID, mesh FIX_ID or "
+                           "extent AXIS lo|hi"
+                         : "the face's name must be followed by plane X, wall FIX_ID, mesh FIX_ID or extent");
   }
 }
 
@@ -81,12 +105,9 @@ std::string face_given_twice(pfv::Face face) {
   return std::string("face ") + pfv::name_of(face) + " is given twice";
 }
 
-void parse_face(Words& words, PfvSettings& settings) {
-  const auto name = words.choice<pfv::Face>();
-  const auto number = static_cast<std::size_t>(name);
-  if (settings.sources[number].kind != Source::none) words.fail(face_given_twice(name));
-  take_source(words, settings.sources[number]);
-  pfv::FaceCondition& face = settings.box[name];
+/// `[no_slip|symmetry] [sealed | pressure P | flux Q]` in any order.
+template <class AnyFace>
+void take_condition(Words& words, std::size_t number, PfvSettings& settings, AnyFace& face) {
   bool has_wall = false, has_boundary = false;
   while (true) {
     if (const auto wall = take_wall(words)) {
@@ -103,7 +124,37 @@ void parse_face(Words& words, PfvSettings& settings) {
   }
 }
 
+void parse_container_face(Words& words, PfvSettings& settings) {
+  pfv::ContainerFace face;
+  face.name = words.word("the face's name");
+  for (const pfv::ContainerFace& other : settings.faces)
+    if (other.name == face.name) words.fail("face " + face.name + " is given twice");
+  PfvFaceSource source;
+  take_source(words, source, true);
+  take_condition(words, settings.faces.size(), settings, face);
+  settings.faces.push_back(face);
+  settings.sources.push_back(source);
+}
+
+void parse_face(Words& words, PfvSettings& settings) {
+  if (settings.container) return parse_container_face(words, settings);
+  const auto name = words.choice<pfv::Face>();
+  const auto number = static_cast<std::size_t>(name);
+  if (settings.sources[number].kind != Source::none) words.fail(face_given_twice(name));
+  take_source(words, settings.sources[number], false);
+  take_condition(words, number, settings, settings.box[name]);
+}
+
+/// From here on the faces have names of their own and may be walls at any angle.
+void parse_container(Words& words, PfvSettings& settings) {
+  for (const PfvFaceSource& source : settings.sources)
+    if (source.kind != Source::none) words.fail("container must come before the faces");
+  settings.container = true;
+  settings.sources.clear();
+}
+
 void parse_patch(Words& words, PfvSettings& settings) {
+  if (settings.container) words.fail("a container has no patches; give a region a pressure or flux");
   pfv::Patch patch;
   patch.face = words.choice<pfv::Face>();
   for (double& edge : patch.rectangle) edge = words.number("the rectangle's edge", demands::finite);
@@ -129,6 +180,7 @@ void parse_region(Words& words, PfvSettings& settings) { parse_place(words, sett
 void parse_point(Words& words, PfvSettings& settings) { parse_place(words, settings, true); }
 
 void parse_pressure_profile(Words& words, PfvSettings& settings) {
+  if (settings.container) words.fail("a container has no pressure_profile; it needs the faces of a box");
   const auto name = words.choice<pfv::Face>();
   const auto number = static_cast<std::size_t>(name);
   if (settings.profiles[number]) words.fail(face_given_twice(name));
@@ -187,7 +239,8 @@ struct Keyword {
   bool comes_several_times;  ///< it says itself what it is about
   void (*parse)(Words&, PfvSettings&);
 };
-constexpr Keyword keywords[]{{"face", true, parse_face},
+constexpr Keyword keywords[]{{"container", false, parse_container},
+                             {"face", true, parse_face},
                              {"patch", true, parse_patch},
                              {"region", true, parse_region},
                              {"point", true, parse_point},
@@ -238,11 +291,17 @@ void apply_profiles(PfvSettings& settings) {
 void check_all(PfvSettings& settings) {
   pfv::settle(settings);
   pfv::check(settings);
+  if (settings.model == pfv::Model::darcy_grid && settings.container)
+    throw pfv::InputError("darcy_grid takes no container: leave it away, or use the model pfv");
   if (settings.model == pfv::Model::darcy_grid && settings.flux_profile)
     throw pfv::InputError("darcy_grid has no flux_profile: leave it away, or use the model pfv");
 }
 
 void require_all_faces(const PfvSettings& settings) {
+  if (settings.container && settings.faces.size() < 3)
+    throw pfv::InputError("container: it has " + std::to_string(settings.faces.size()) +
+                          " faces; give each wall `face NAME (plane ... | wall FIX_ID | mesh FIX_ID | extent ...)`");
+  if (settings.container) return;
   std::string missing;
   for (const pfv::Face name : pfv::all_faces)
     if (settings.sources[static_cast<std::size_t>(name)].kind == Source::none)
@@ -253,15 +312,26 @@ void require_all_faces(const PfvSettings& settings) {
                           "| extent)`");
 }
 
+std::size_t take_face_number(Words& words, const PfvSettings& settings) {
+  if (!settings.container) return static_cast<std::size_t>(words.choice<pfv::Face>());
+  const std::string name = words.word("the face's name");
+  std::string known;
+  for (std::size_t f = 0; f < settings.faces.size(); ++f) {
+    if (settings.faces[f].name == name) return f;
+    append(known, settings.faces[f].name);
+  }
+  words.fail("there is no face '" + name + "'; there are " + known);
+}
+
 /// `pressure NAME P`, `flux NAME Q`, `sealed NAME`: false for another keyword.
 bool modify_face(const std::string& keyword, Words& words, PfvSettings& settings) {
   for (const pfv::BoundaryKind& kind : pfv::boundary_kinds) {
     if (keyword != kind.name) continue;
-    const auto face = words.choice<pfv::Face>();
-    const auto number = static_cast<std::size_t>(face);
+    const std::size_t number = take_face_number(words, settings);
     for (const Of of : {Of::face, Of::mean, Of::amplitude}) unbind(settings, of, number);
-    settings.profiles[number].reset();
-    settings.box[face].boundary = take_boundary_of(kind, words, {Of::face, number, {}}, settings);
+    if (!settings.container) settings.profiles[number].reset();
+    (settings.container ? settings.faces[number].boundary : settings.box.faces[number].boundary) =
+        take_boundary_of(kind, words, {Of::face, number, {}}, settings);
     return true;
   }
   return false;
@@ -317,7 +387,12 @@ double& bound_number(PfvSettings& settings, const PfvBinding& binding) {
     case Of::amplitude: return settings.profiles[binding.number]->amplitude;
     case Of::face: break;
   }
+  if (settings.container) return settings.faces[binding.number].boundary.value;
   return settings.box.faces[binding.number].boundary.value;
+}
+
+std::string face_name(const PfvSettings& settings, int face) {
+  return settings.container ? settings.faces[face].name : pfv::name_of(pfv::all_faces[face]);
 }
 
 }  // namespace LAMMPS_NS

@@ -4,7 +4,7 @@
 #ifndef LMP_PFV_ARGUMENTS_H
 #define LMP_PFV_ARGUMENTS_H
 
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/settings.hpp"
 
 #include <array>
@@ -19,8 +19,9 @@ namespace LAMMPS_NS {
 struct PfvFaceSource {
   enum class Kind { none, plane, wall, mesh, extent };
   Kind kind = Kind::none;
-  double plane = 0.0;  ///< m
+  double plane = 0.0;  ///< of a box, m
   std::string fix_id;  ///< of the wall or mesh
+  pfv::Surface surface;  ///< plane or, with `extent`, its direction: of a container
 };
 
 /// p = mean + amplitude cos(pi s / half_period), s the coordinate along `axis`.
@@ -58,7 +59,10 @@ struct PfvFieldOutput {
 /// Gravity is set later, from `fix gravity`; so are positions and velocities of the box' faces.
 struct PfvSettings : pfv::Settings {
   pfv::Box box;
-  std::array<PfvFaceSource, 6> sources;
+  /// In place of the box's faces: a container of walls as they are.
+  bool container = false;
+  std::vector<pfv::ContainerFace> faces;
+  std::vector<PfvFaceSource> sources = std::vector<PfvFaceSource>(6);  ///< of the box's faces, or of these
   std::array<std::optional<PfvCosine>, 6> profiles;
   std::vector<PfvBinding> bindings;
   std::optional<PfvFieldOutput> fields;
@@ -77,6 +81,9 @@ int modify_pfv(PfvSettings& settings, int narg, char** arg);
 
 /// The number that a binding feeds.
 double& bound_number(PfvSettings& settings, const PfvBinding& binding);
+
+/// "zlo", or the name that a face of a container has.
+std::string face_name(const PfvSettings& settings, int face);
 
 }  // namespace LAMMPS_NS
 

@@ -2,6 +2,7 @@
 #include "face_sources.h"
 
 #include "private_member.h"
+#include "wall_shapes.h"
 
 #include "pfv/error.hpp"
 
@@ -10,7 +11,6 @@
 #include "mesh_module_stress.h"
 #include "mesh_module_stress_servo.h"
 #include "modify.h"
-#include "primitive_wall.h"
 #include "tri_mesh.h"
 
 #include <mpi.h>
@@ -41,34 +41,7 @@ using Source = PfvFaceSource::Kind;
 /// carry about seven digits.
 constexpr double planarity = 1e-6;
 
-[[noreturn]] void fail(int number, const std::string& what) {
-  const pfv::Face face = pfv::all_faces[number];
-  throw pfv::InputError(std::string("face ") + pfv::name_of(face) + ": " + what);
-}
-
 char axis_name(int number) { return "xyz"[number / 2]; }
-
-Fix* find_fix(Modify* modify, int number, const std::string& id) {
-  const int index = modify->find_fix(id.c_str());
-  if (index < 0) fail(number, "there is no fix '" + id + "'; define it before this fix");
-  return modify->fix[index];
-}
-
-/// Axis and position of a primitive plane. PrimitiveWall keeps them private, but the vector from a
-/// place to the wall tells both: it has one component that changes with the place.
-struct Plane {
-  int axis;
-  double position;
-};
-Plane plane_of(PrimitiveWall* wall) {
-  double a[3] = {0.0, 0.0, 0.0}, b[3] = {1.0, 2.0, 4.0};
-  double to_wall_a[3] = {0.0, 0.0, 0.0}, to_wall_b[3] = {0.0, 0.0, 0.0};
-  wall->resolveContact(a, 0.0, to_wall_a);
-  wall->resolveContact(b, 0.0, to_wall_b);
-  for (int axis = 0; axis < 3; ++axis)
-    if (to_wall_a[axis] != to_wall_b[axis]) return {axis, to_wall_a[axis]};
-  return {-1, 0.0};
-}
 
 MeshModuleStress* stress_of(FixMeshSurface* mesh) {
   return mesh ? dynamic_cast<MeshModuleStress*>(mesh->get_module("stress")) : nullptr;
@@ -97,43 +70,122 @@ const MeshModuleStressServo* piston_servo(FixMeshSurface* mesh, int axis) {
 
 }  // namespace
 
-void PfvFaceSources::bind(const std::array<PfvFaceSource, 6>& sources) {
-  sources_ = sources;
-  meshes_.fill(nullptr);
-  velocities_.fill(0.0);
-  for (int number = 0; number < 6; ++number) {
+void PfvFaceSources::fail(int number, const std::string& what) const {
+  throw pfv::InputError("face " + names_[number] + ": " + what);
+}
+
+Fix* PfvFaceSources::find_fix(int number, const std::string& id) const {
+  const int index = modify->find_fix(id.c_str());
+  if (index < 0) fail(number, "there is no fix '" + id + "'; define it before this fix");
+  return modify->fix[index];
+}
+
+int PfvFaceSources::axis_of(int number) const {
+  if (!container_) return number / 2;
+  const pfv::Surface& surface = shapes_[number].surface;
+  for (int axis = 0; axis < 3; ++axis)
+    if (surface.is_plane() && std::abs(surface.normal[axis]) == 1.0) return axis;
+  return -1;
+}
+
+void PfvFaceSources::bind(const PfvSettings& settings) {
+  container_ = settings.container;
+  sources_ = settings.sources;
+  names_.clear();
+  for (int number = 0; number < count(); ++number) names_.push_back(face_name(settings, number));
+  meshes_.assign(count(), nullptr);
+  begun_.assign(count(), 0.0);
+  positions_.resize(count(), 0.0);
+  velocities_.assign(count(), 0.0);
+  gliding_.assign(count(), {});
+  shapes_.assign(container_ ? count() : 0, {});
+  outwards_.assign(container_ ? count() : 0, 0.0);
+  for (int number = 0; number < count(); ++number) {
     const PfvFaceSource& source = sources_[number];
-    if (source.kind == Source::plane) positions_[number] = source.plane;
+    if (container_) shapes_[number].surface = source.surface;
+    if (source.kind == Source::plane && !container_) positions_[number] = source.plane;
     if (source.kind == Source::wall) bind_wall(source, number);
     if (source.kind == Source::mesh) bind_mesh(source, number);
+    // the words tell which way these look
+    if (container_ && (source.kind == Source::plane || source.kind == Source::extent)) outwards_[number] = 1.0;
   }
 }
 
 void PfvFaceSources::bind_wall(const PfvFaceSource& source, int number) {
-  auto* wall = dynamic_cast<FixWallGran*>(find_fix(modify, number, source.fix_id));
+  auto* wall = dynamic_cast<FixWallGran*>(find_fix(number, source.fix_id));
   if (!wall) fail(number, "fix '" + source.fix_id + "' is no wall/gran");
   if (wall->is_mesh_wall())
     fail(number, "fix '" + source.fix_id + "' is a mesh wall; name its mesh with `mesh FIX_ID`");
-  PrimitiveWall* primitive = wall->primitiveWall();
-  if (primitive->axis() >= 0)
-    fail(number, "fix '" + source.fix_id + "' is a cylinder; a face needs a plane");
-  const Plane plane = plane_of(primitive);
-  if (plane.axis != number / 2)
+  const pfv::Surface surface = surface_of(wall, "face " + names_[number] + ": wall '" + source.fix_id + "' ");
+  if (container_) {
+    shapes_[number].surface = surface;
+    return;
+  }
+  if (!surface.is_plane())
+    fail(number, "fix '" + source.fix_id + "' is a cylinder; a face of a box needs a plane: use `container` and "
+                 "give each wall a face of its own");
+  if (surface.normal[number / 2] != 1.0)
     fail(number, "wall '" + source.fix_id + "' is not normal to the " + axis_name(number) + " axis");
-  positions_[number] = plane.position;
+  positions_[number] = surface.offset;
 }
 
 void PfvFaceSources::bind_mesh(const PfvFaceSource& source, int number) {
-  auto* mesh = dynamic_cast<FixMeshSurface*>(find_fix(modify, number, source.fix_id));
+  auto* mesh = dynamic_cast<FixMeshSurface*>(find_fix(number, source.fix_id));
   if (!mesh)
     fail(number, "fix '" + source.fix_id + "' is no mesh/surface; name a primitive plane with "
                  "`wall FIX_ID`");
   meshes_[number] = mesh;
 }
 
+std::vector<Eigen::Vector3d> PfvFaceSources::pivots() const {
+  std::vector<Eigen::Vector3d> pivots;
+  for (const pfv::ContainerFace& shape : shapes_) pivots.push_back(shape.pivot);
+  return pivots;
+}
+
+void PfvFaceSources::place(int number, pfv::ContainerFace& face) const {
+  const pfv::ContainerFace& shape = shapes_[number];
+  face.surface = shape.surface;
+  if (outwards_[number] < 0.0) {
+    face.surface.normal = -shape.surface.normal;
+    face.surface.offset = -shape.surface.offset;
+  }
+  face.velocity = shape.velocity;
+  face.angular_velocity = shape.angular_velocity;
+  face.pivot = shape.pivot;
+  const int axis = axis_of(number);
+  face.guide = axis >= 0 ? Eigen::Vector3d(Eigen::Vector3d::Unit(axis)) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+/// A wall does not say on which side of it the fluid is: the grains do, when they are first seen.
+void PfvFaceSources::turn_outwards(const Eigen::Vector3d& middle) {
+  for (int number = 0; number < count(); ++number) {
+    const pfv::Surface& surface = shapes_[number].surface;
+    if (outwards_[number] == 0.0) outwards_[number] = surface.is_plane() && surface.distance(middle) < 0.0 ? -1.0 : 1.0;
+  }
+}
+
 void PfvFaceSources::read() {
-  for (int number = 0; number < 6; ++number)
-    if (meshes_[number]) read_mesh(number);
+  for (int number = 0; number < count(); ++number) {
+    if (meshes_[number] && container_)
+      read_plane(number);
+    else if (meshes_[number])
+      read_mesh(number);
+    if (!container_) continue;
+    // any motion changes the distance from some place far off
+    const Eigen::Vector3d far(1.7e3, -2.3e3, 3.1e3);
+    positions_[number] = shapes_[number].surface.distance(far);
+  }
+}
+
+/// A plane does not say which way its normal points: the same as before.
+void PfvFaceSources::read_plane(int number) {
+  const Eigen::Vector3d before = shapes_[number].surface.normal;
+  pfv::ContainerFace& shape = shapes_[number];
+  shape = plane_of_mesh(meshes_[number], world, "face " + names_[number] + ": mesh '" + sources_[number].fix_id + "' ");
+  if (shape.surface.normal.dot(before) >= 0.0) return;
+  shape.surface.normal = -shape.surface.normal;
+  shape.surface.offset = -shape.surface.offset;
 }
 
 void PfvFaceSources::read_mesh(int number) {
@@ -217,59 +269,64 @@ pfv::FaceCondition PfvFaceSources::condition(int number, pfv::Wall wall,
 
 void PfvFaceSources::follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& centres,
                                    const Eigen::Ref<const Eigen::VectorXd>& radii) {
-  for (int number = 0; number < 6; ++number) {
+  if (container_ && radii.size() > 0) turn_outwards(centres.rowwise().mean());
+  for (int number = 0; number < count(); ++number) {
     if (sources_[number].kind != Source::extent) continue;
     if (radii.size() == 0) fail(number, "`extent` has no grain to follow; the group is empty");
-    const auto coordinates = centres.row(number / 2).transpose();
-    positions_[number] = pfv::is_upper(pfv::all_faces[number])
-                             ? (coordinates + radii).maxCoeff()
-                             : (coordinates - radii).minCoeff();
+    const int axis = axis_of(number);
+    const bool upper = container_ ? shapes_[number].surface.normal[axis] > 0.0 : number % 2 == 1;
+    const auto coordinates = centres.row(axis).transpose();
+    const double extreme = upper ? (coordinates + radii).maxCoeff() : (coordinates - radii).minCoeff();
+    if (container_) shapes_[number].surface.offset = upper ? extreme : -extreme;
+    positions_[number] = extreme;
   }
 }
 
 void PfvFaceSources::begin_forces() {
-  for (int number = 0; number < 6; ++number)
-    if (MeshModuleStress* stress = stress_of(meshes_[number]))
-      begun_[number] = stress->f_total(number / 2);
+  for (int number = 0; number < count(); ++number)
+    if (MeshModuleStress* stress = stress_of(meshes_[number]); stress && axis_of(number) >= 0)
+      begun_[number] = stress->f_total(axis_of(number));
 }
 
-std::array<pfv::Piston, 6> PfvFaceSources::pistons(bool forces) const {
-  std::array<pfv::Piston, 6> pistons{};
-  std::array<double, 6> of_grains{};
+std::vector<pfv::Piston> PfvFaceSources::pistons(bool forces) const {
+  std::vector<pfv::Piston> pistons(count());
+  std::vector<double> of_grains(count(), 0.0);
   bool any = false;
-  for (int number = 0; number < 6; ++number) {
-    const MeshModuleStressServo* servo = piston_servo(meshes_[number], number / 2);
+  for (int number = 0; number < count(); ++number) {
+    const int axis = axis_of(number);
+    const MeshModuleStressServo* servo = axis < 0 ? nullptr : piston_servo(meshes_[number], axis);
     if (!servo) continue;
     any = true;
     // LIGGGHTS keeps the target with the other sign, as the force of the grains that answers it
     const double target = -(servo->*member(PfvServoSetPoint()));
     pistons[number].mass = std::abs(target) / (servo->*member(PfvServoLargest()) *
                                                servo->*member(PfvServoKi()));
-    pistons[number].other_force = target * (servo->*member(PfvServoAxis()))[number / 2];
-    of_grains[number] = stress_of(meshes_[number])->f_total(number / 2) - begun_[number];
+    pistons[number].other_force = target * (servo->*member(PfvServoAxis()))[axis];
+    of_grains[number] = stress_of(meshes_[number])->f_total(axis) - begun_[number];
   }
   if (!forces || !any) return pistons;
-  MPI_Allreduce(MPI_IN_PLACE, of_grains.data(), 6, MPI_DOUBLE, MPI_SUM, world);
-  for (int number = 0; number < 6; ++number) pistons[number].other_force += of_grains[number];
+  MPI_Allreduce(MPI_IN_PLACE, of_grains.data(), count(), MPI_DOUBLE, MPI_SUM, world);
+  for (int number = 0; number < count(); ++number) pistons[number].other_force += of_grains[number];
   return pistons;
 }
 
 double PfvFaceSources::largest_load() const {
   if (!any_mesh()) return 0.0;
-  std::array<double, 6> loads{};
-  for (int number = 0; number < 6; ++number)
-    if (MeshModuleStress* stress = stress_of(meshes_[number]))
-      loads[number] = stress->f_total(number / 2) - begun_[number];
-  MPI_Allreduce(MPI_IN_PLACE, loads.data(), 6, MPI_DOUBLE, MPI_SUM, world);
+  std::vector<double> loads(count(), 0.0);
+  for (int number = 0; number < count(); ++number)
+    if (MeshModuleStress* stress = stress_of(meshes_[number]); stress && axis_of(number) >= 0)
+      loads[number] = stress->f_total(axis_of(number)) - begun_[number];
+  MPI_Allreduce(MPI_IN_PLACE, loads.data(), count(), MPI_DOUBLE, MPI_SUM, world);
   double largest = 0.0;
   for (const double load : loads) largest = std::max(largest, std::abs(load));
   return largest;
 }
 
-std::array<PfvServoGain, 6> PfvFaceSources::proportional_gains() const {
-  std::array<PfvServoGain, 6> gains{};
-  for (int number = 0; number < 6; ++number) {
-    const MeshModuleStressServo* servo = force_servo(meshes_[number], number / 2);
+std::vector<PfvServoGain> PfvFaceSources::proportional_gains() const {
+  std::vector<PfvServoGain> gains(count());
+  for (int number = 0; number < count(); ++number) {
+    const int axis = axis_of(number);
+    const MeshModuleStressServo* servo = axis < 0 ? nullptr : force_servo(meshes_[number], axis);
     if (!servo) continue;
     const double kp = servo->*member(PfvServoKp());
     gains[number] = {std::abs(kp * (servo->*member(PfvServoLargest())) /
@@ -283,8 +340,8 @@ bool PfvFaceSources::any_mesh() const {
   return std::any_of(meshes_.begin(), meshes_.end(), [](const auto* mesh) { return mesh != nullptr; });
 }
 
-void PfvFaceSources::push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const {
-  for (int number = 0; number < 6; ++number) {
+void PfvFaceSources::push_meshes(const std::vector<Eigen::Vector3d>& forces) const {
+  for (int number = 0; number < count(); ++number) {
     if (!meshes_[number]) continue;
     MeshModuleStress* stress = stress_of(meshes_[number]);
     if (!stress) continue;

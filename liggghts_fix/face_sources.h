@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the six faces of the flow box are and how fast they move: planes, walls, meshes, grains.
+// Where the faces of the flow box or container are and how fast they move: planes, walls, meshes, grains.
 #ifndef LMP_PFV_FACE_SOURCES_H
 #define LMP_PFV_FACE_SOURCES_H
 
@@ -9,7 +9,8 @@
 
 #include "pointers.h"
 
-#include <array>
+#include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -25,8 +26,8 @@ class PfvFaceSources : protected Pointers {
   explicit PfvFaceSources(class LAMMPS* lmp) : Pointers(lmp) {}
 
   /// Finds the walls and meshes that the faces name. Throws pfv::InputError, the same on all ranks,
-  /// where one is missing or is no plane normal to the face's axis.
-  void bind(const std::array<PfvFaceSource, 6>& sources);
+  /// where one is missing or has not the shape that its face needs: of a box, a plane normal to the face's axis.
+  void bind(const PfvSettings& settings);
 
   /// Reads where planes, walls and meshes are now; collective. Leaves `extent` faces alone. Throws
   /// pfv::InputError, the same on all ranks, for a mesh that is no longer normal to its axis.
@@ -37,10 +38,13 @@ class PfvFaceSources : protected Pointers {
   void follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& centres,
                      const Eigen::Ref<const Eigen::VectorXd>& radii);
 
-  const std::array<double, 6>& positions() const { return positions_; }    ///< m
-  /// m/s along the face's axis; that of a mesh's nodes, 0 for everything else.
-  const std::array<double, 6>& velocities() const { return velocities_; }
-  /// The face with its motion in its own plane, which a mesh's nodes have as parts of one rigid body.
+  /// m; of a container's faces a number that changes with their place.
+  const std::vector<double>& positions() const { return positions_; }
+  /// Places that move with the faces of a container: m.
+  std::vector<Eigen::Vector3d> pivots() const;
+  /// A container's face: its shape and motion; after `follow_grains`.
+  void place(int number, pfv::ContainerFace& face) const;
+  /// A box's face with its motion in its own plane, which a mesh's nodes have as parts of one rigid body.
   pfv::FaceCondition condition(int number, pfv::Wall wall, pfv::Boundary boundary) const;
 
   /// Remembers what the meshes' stress modules hold before the forces of a step are reckoned.
@@ -50,34 +54,44 @@ class PfvFaceSources : protected Pointers {
   /// controls a force along the face's axis. LIGGGHTS moves them by m dv/dt = F + target with
   /// m = target / (vel_max ki). With `forces`: also the force of the grains on them in this step and the
   /// target; collective.
-  std::array<pfv::Piston, 6> pistons(bool forces) const;
+  std::vector<pfv::Piston> pistons(bool forces) const;
 
   /// The faces under a servo with a proportional gain: v = kp vel_max (target - F) / target.
-  std::array<PfvServoGain, 6> proportional_gains() const;
+  std::vector<PfvServoGain> proportional_gains() const;
 
   bool any_mesh() const;
   /// The largest force that grains put on one of the meshes along its axis in this step, N; collective.
   double largest_load() const;
   /// Adds a force (N) to what the meshes' stress modules record in this step, so that outputs and
   /// servos see it. Rank 0.
-  void push_meshes(const std::array<Eigen::Vector3d, 6>& forces) const;
+  void push_meshes(const std::vector<Eigen::Vector3d>& forces) const;
 
  private:
+  int count() const { return static_cast<int>(sources_.size()); }
+  int axis_of(int number) const;  ///< that the face is normal to and may be moved along, or -1
+  [[noreturn]] void fail(int number, const std::string& what) const;
+  class Fix* find_fix(int number, const std::string& id) const;
   void bind_wall(const PfvFaceSource& source, int number);
   void bind_mesh(const PfvFaceSource& source, int number);
+  void read_plane(int number);
   void read_mesh(int number);
   void read_gliding(int number);
+  void turn_outwards(const Eigen::Vector3d& middle);
 
-  std::array<PfvFaceSource, 6> sources_;
-  std::array<class FixMeshSurface*, 6> meshes_{};
-  std::array<double, 6> begun_{};  ///< force along the face's axis that this rank's module held, N
-  std::array<double, 6> positions_{};
-  std::array<double, 6> velocities_{};
+  bool container_ = false;
+  std::vector<std::string> names_;
+  std::vector<PfvFaceSource> sources_;
+  std::vector<class FixMeshSurface*> meshes_;
+  std::vector<double> begun_;  ///< force along the face's axis that this rank's module held, N
+  std::vector<double> positions_;
+  std::vector<double> velocities_;
   struct Gliding {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), pivot = Eigen::Vector3d::Zero();
     double spin = 0.0;
   };
-  std::array<Gliding, 6> gliding_{};
+  std::vector<Gliding> gliding_;
+  std::vector<pfv::ContainerFace> shapes_;  ///< of a container
+  std::vector<double> outwards_;            ///< which way a shape's normal points: 1, -1, or 0 as long as unknown
 };
 
 }  // namespace LAMMPS_NS

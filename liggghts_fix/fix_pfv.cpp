@@ -73,7 +73,7 @@ void FixPfv::init() {
   check_variables();
   check_other_fixes();
   bind_coupling();
-  everywhere([&] { faces_.bind(settings_.sources); });
+  everywhere([&] { faces_.bind(settings_); });
   array_atom = per_atom_->array_atom;
   // computes behind variables have to be ready for the setup's evaluation
   if (!settings_.bindings.empty()) modify->addstep_compute_all(update->ntimestep);
@@ -176,21 +176,34 @@ void FixPfv::update_bound_numbers() {
                           (adapts() ? 1 : std::max(1, settings_.steps.couple_every - since_.steps)));
 }
 
-/// Boundary conditions and velocities of the faces; their positions follow in place_faces.
-pfv::Box FixPfv::current_box() {
-  update_bound_numbers();
-  pfv::Box box = settings_.box;
-  for (int number = 0; number < 6; ++number) {
+namespace {
+
+pfv::Box box_with_conditions(const PfvSettings& settings, const PfvFaceSources& sources) {
+  pfv::Box box = settings.box;
+  for (int number = 0; number < pfv::face_count; ++number) {
     pfv::FaceCondition& face = box.faces[number];
-    if (const auto& cosine = settings_.profiles[number]) {
+    if (const auto& cosine = settings.profiles[number]) {
       face.boundary.value = cosine->mean;
       face.boundary.profile = [cosine = *cosine](const Eigen::Vector3d& place, double) {
         return cosine.mean + cosine.amplitude * std::cos(M_PI * place[cosine.axis] / cosine.half_period);
       };
     }
-    face = faces_.condition(number, face.wall, face.boundary);
+    face = sources.condition(number, face.wall, face.boundary);
   }
   return box;
+}
+
+}  // namespace
+
+/// Boundary conditions and velocities of the faces; their positions follow in place_faces.
+pfv::Container FixPfv::current_container() {
+  update_bound_numbers();
+  if (!settings_.container) return box_with_conditions(settings_, faces_);
+  pfv::Container container;
+  container.faces = settings_.faces;
+  container.regions = settings_.box.regions;
+  for (int number = 0; number < container.face_count(); ++number) faces_.place(number, container.faces[number]);
+  return container;
 }
 
 // ------------------------------------------------------------------------------------- flow calls
@@ -203,30 +216,44 @@ void FixPfv::read_host() {
   pistons_ = faces_.pistons(needs_forces());
 }
 
-/// Completes the box on rank 0, where the grains are.
-void FixPfv::place_faces(pfv::Box& box) {
+/// Completes the container on rank 0, where the grains are.
+void FixPfv::place_faces(pfv::Container& container) {
   const pfv::Packing packing = grains_.packing();
   faces_.follow_grains(packing.positions, packing.radii);
+  if (settings_.container) {
+    for (int number = 0; number < container.face_count(); ++number) {
+      pfv::ContainerFace& face = container.faces[number];
+      const Eigen::Vector3d velocity = face.velocity;  // that of several steps may be a mean
+      faces_.place(number, face);
+      face.velocity = velocity;
+    }
+    pfv::Container whole = pfv::container_of(container.faces);
+    whole.regions = container.regions;
+    container = std::move(whole);
+    return;
+  }
+  pfv::Box box = *pfv::box_of(container);
   for (const pfv::Face face : pfv::all_faces)
     (pfv::is_upper(face) ? box.upper : box.lower)[pfv::axis_of(face)] =
         faces_.positions()[static_cast<int>(face)];
+  container = box;
 }
 
 /// A flow keeps its fluid for life: where gravity or viscosity have changed since the last run,
 /// another one takes over its state, on a network that both build from the same grains.
-void FixPfv::prepare_flow(const pfv::Box& box) {
+void FixPfv::prepare_flow(const pfv::Container& container) {
   if (flow_ && flow_->fluid().gravity == settings_.fluid.gravity &&
       flow_->fluid().viscosity == settings_.fluid.viscosity) {
-    flow_->set_box(box);
+    flow_->set_container(container);
     return;
   }
   if (flow_) {
-    flow_->set_box(box);
+    flow_->set_container(container);
     flow_->rebuild();
     flow_->evaluate(grains_.packing(), flow_step());
     restored_ = flow_->state();
   }
-  flow_ = pfv::make_flow(box, settings_.fluid, settings_.options, settings_.grid());
+  flow_ = pfv::make_flow(container, settings_.fluid, settings_.options, settings_.grid());
   if (restored_) flow_->set_state(*restored_);
   restored_.reset();
 }
@@ -252,6 +279,7 @@ void FixPfv::begin_anew_where_moved() {
   since_.steps = 0;
   since_.time = 0.0;
   since_.face_positions = faces_.positions();
+  since_.pivots = faces_.pivots();
   since_.grains = grains_.snapshot();
 }
 
@@ -271,11 +299,14 @@ void FixPfv::remember_state() {
 /// that grains will be poured into has none yet, and is left in peace. Rank 0.
 void FixPfv::warn_of_empty_box() const {
   const pfv::Packing packing = grains_.packing();
-  const auto inside = ((packing.positions.colwise() - box_.lower).array() > 0.0 &&
-                       (packing.positions.colwise() - box_.upper).array() < 0.0)
-                          .colwise()
-                          .all();
-  if (packing.size() == 0 || inside.any()) return;
+  const auto is_inside = [&](Eigen::Index k) {
+    return std::all_of(container_.faces.begin(), container_.faces.end(), [&](const pfv::ContainerFace& face) {
+      return face.surface.distance(packing.positions.col(k)) > 0.0;
+    });
+  };
+  bool any = packing.size() == 0;
+  for (Eigen::Index k = 0; k < packing.size() && !any; ++k) any = is_inside(k);
+  if (any) return;
   std::ostringstream text;
   const auto reach = [&text](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     for (int axis = 0; axis < 3; ++axis)
@@ -283,7 +314,7 @@ void FixPfv::warn_of_empty_box() const {
   };
   text << "Fix pfv (id " << id << "): all " << packing.size() << " grains of the group are outside the "
        << "flow box, the fluid acts on none; the box reaches ";
-  reach(box_.lower, box_.upper);
+  reach(container_.lower, container_.upper);
   text << " m, the centres of the grains ";
   reach(packing.positions.rowwise().minCoeff(), packing.positions.rowwise().maxCoeff());
   text << " m";
@@ -311,12 +342,13 @@ void FixPfv::setup(int) {
   settings_.fluid.gravity = gravity();
   read_host();
   begin_anew_where_moved();
-  box_ = current_box();
+  container_ = current_container();
   if (since_.steps == 0) since_.face_positions = faces_.positions();
+  if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
   on_root([&] {
-    place_faces(box_);
+    place_faces(container_);
     warn_of_empty_box();
-    prepare_flow(box_);
+    prepare_flow(container_);
     check_servos();
     call_flow(flow_step(), false);
     if (since_.steps == 0) since_.grains = grains_.snapshot();
@@ -346,20 +378,17 @@ void FixPfv::advance() {
   since_.steps = 0;
   ++taken_.solves;
   read_host();
-  box_ = current_box();
+  container_ = current_container();
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
   const bool mean = settings_.steps.couple_every > 1 || (adapts() && steps > 1);
-  if (mean)
-    for (int number = 0; number < 6; ++number)
-      if (settings_.sources[number].kind == PfvFaceSource::Kind::mesh)
-        box_.faces[number].velocity =
-            (faces_.positions()[number] - since_.face_positions[number]) / since_.time;
+  if (mean) use_mean_velocities_of_faces();
   since_.face_positions = faces_.positions();
+  since_.pivots = faces_.pivots();
   on_root([&] {
-    place_faces(box_);
+    place_faces(container_);
     if (mean) grains_.use_mean_velocities(since_.grains, since_.time);
-    flow_->set_box(box_);
+    flow_->set_container(container_);
     call_flow(since_.time, true);
     watch_time_step();
     if (mean || adapts()) since_.grains = grains_.snapshot();
@@ -367,6 +396,17 @@ void FixPfv::advance() {
   since_.time = 0.0;
   if (adapts()) plan_next_solve(steps);
   after_flow_call();
+}
+
+void FixPfv::use_mean_velocities_of_faces() {
+  for (int number = 0; number < container_.face_count(); ++number) {
+    if (settings_.sources[number].kind != PfvFaceSource::Kind::mesh) continue;
+    Eigen::Vector3d& velocity = container_.faces[number].velocity;
+    if (settings_.container)
+      velocity = (faces_.pivots()[number] - since_.pivots[number]) / since_.time;
+    else
+      velocity[number / 2] = (faces_.positions()[number] - since_.face_positions[number]) / since_.time;
+  }
 }
 
 void FixPfv::after_flow_call() {
@@ -395,9 +435,10 @@ void FixPfv::apply_forces() {
 
 void FixPfv::push_meshes() {
   if (comm->me != 0 || !faces_.any_mesh()) return;
-  std::array<Eigen::Vector3d, 6> forces = flow_->face_forces();
+  std::vector<Eigen::Vector3d> forces = flow_->face_forces();
+  const std::vector<Eigen::Vector3d>& slope = plan_ ? plan_->interval().held().face_slope : forces;
   if (const double trend = steps_of_trend(); trend != 0.0)
-    for (int f = 0; f < 6; ++f) forces[f] += trend * plan_->interval().held().face_slope[f];
+    for (std::size_t f = 0; f < forces.size(); ++f) forces[f] += trend * slope[f];
   faces_.push_meshes(forces);
 }
 
@@ -428,8 +469,8 @@ void FixPfv::write_restart(FILE* file) {
   record.last_positions = since_.face_positions;
   on_root([&] {
     if (flow_) {
-      place_faces(box_);
-      flow_->set_box(box_);
+      place_faces(container_);
+      flow_->set_container(container_);
       flow_->rebuild();
       flow_->evaluate(grains_.packing(), flow_step());
       record.flow = flow_->state();

@@ -69,12 +69,13 @@ class FixPfv : public Fix {
   void check_other_fixes();
 
   // one flow call
-  pfv::Box current_box();
+  pfv::Container current_container();
   void update_bound_numbers();
   void read_host();
   void advance();
-  void prepare_flow(const pfv::Box& box);
-  void place_faces(pfv::Box& box);
+  void prepare_flow(const pfv::Container& container);
+  void place_faces(pfv::Container& container);
+  void use_mean_velocities_of_faces();
   void begin_anew_where_moved();
   void remember_state();
   void warn_of_empty_box() const;
@@ -101,7 +102,7 @@ class FixPfv : public Fix {
   void check_servos();
   std::string swinging_servo(int face, const PfvServoGain& servo, double resistance,
                              double swing) const;
-  Eigen::Matrix<double, 6, 6> resistances_to(const std::array<PfvServoGain, 6>& gains);
+  Eigen::MatrixXd resistances_to(const std::vector<PfvServoGain>& gains);
 
   // outputs
   double quantity(int n);
@@ -116,14 +117,15 @@ class FixPfv : public Fix {
   PfvGroups groups_;
   std::string obstacle_;  // to staged and implicit coupling
   bool rigid_bodies_ = false;
-  std::array<pfv::Piston, 6> pistons_{};
+  std::vector<pfv::Piston> pistons_;
   class FixPropertyAtom* per_atom_ = nullptr;
-  pfv::Box box_;
+  pfv::Container container_;
 
   struct SinceSolve {
     int steps = 0;
     double time = 0.0;                       // s
-    std::array<double, 6> face_positions{};  // at it
+    std::vector<double> face_positions;      // at it
+    std::vector<Eigen::Vector3d> pivots;     // of a container's faces
     PfvSnapshot grains;                      // at it; rank 0
   } since_;
   struct Taken {

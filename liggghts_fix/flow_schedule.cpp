@@ -18,7 +18,7 @@ bool FixPfv::solve_due() {
   const double tolerance = *settings_.steps.couple_error;
   return since_.steps >= next_.steps ||
          (!settings_.bindings.empty() &&
-          pfv::imposed_values_differ(current_box(), box_, tolerance)) ||
+          pfv::imposed_values_differ(current_container(), container_, tolerance)) ||
          (since_.steps >= 2 && next_.has_jumped(gross_motion(), tolerance));
 }
 

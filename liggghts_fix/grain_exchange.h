@@ -38,7 +38,7 @@ class PfvGrainExchange : protected Pointers {
   /// kg, infinite for a grain that no force moves; rank 0.
   const Eigen::VectorXd& masses() const { return masses_; }
   /// Masses and forces of the last gathering with forces, and these pistons; rank 0.
-  pfv::GrainDynamics dynamics(const std::array<pfv::Piston, 6>& pistons) const {
+  pfv::GrainDynamics dynamics(const std::vector<pfv::Piston>& pistons) const {
     return {{masses_.data(), masses_.size()},
             {forces_.data(), 3, forces_.cols()},
             pistons,

@@ -5,23 +5,23 @@
 
 #include "pfv/packing.hpp"
 
-#include <array>
+#include <vector>
 
 namespace LAMMPS_NS {
 
 struct PfvLeftState {
   pfv::PackingArrays grains;       ///< without velocities
-  std::array<double, 6> faces{};   ///< m
+  std::vector<double> faces;       ///< m
 
   /// To the last bit: a network is kept only for what it was built from or has followed itself.
-  bool is(const pfv::Packing& packing, const std::array<double, 6>& positions) const {
+  bool is(const pfv::Packing& packing, const std::vector<double>& positions) const {
     return packing.size() == grains.ids.size() && packing.ids == grains.ids &&
            packing.positions == grains.positions && packing.radii == grains.radii &&
            positions == faces;
   }
 };
 
-inline PfvLeftState left_state(const pfv::Packing& packing, const std::array<double, 6>& faces) {
+inline PfvLeftState left_state(const pfv::Packing& packing, const std::vector<double>& faces) {
   PfvLeftState state;
   state.grains.ids = packing.ids;
   state.grains.positions = packing.positions;

@@ -10,7 +10,7 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 4.0;
+constexpr double format_number = 5.0;
 
 class Reader {
  public:
@@ -48,6 +48,7 @@ std::vector<double> pack(const PfvRestartRecord& record) {
   const auto append = [&data](const auto& values) {
     data.insert(data.end(), values.begin(), values.end());
   };
+  data.push_back(static_cast<double>(record.last_positions.size()));
   append(record.last_positions);
   append(std::array<double, 3>{record.flow.volume_debt, record.flow.fluid_at_start,
                                record.flow.fluid_came_in});
@@ -78,7 +79,7 @@ PfvRestartRecord unpack(const char* bytes) {
   record.flow.retriangulations = static_cast<std::int64_t>(reader.next());
   record.steps_since_flow = static_cast<int>(reader.next());
   record.elapsed = reader.next();
-  for (double& position : record.last_positions) position = reader.next();
+  record.last_positions = reader.list<double>(reader.count());
   record.flow.volume_debt = reader.next();
   record.flow.fluid_at_start = reader.next();
   record.flow.fluid_came_in = reader.next();

@@ -8,7 +8,6 @@
 
 #include "pfv/flow_model.hpp"
 
-#include <array>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -18,7 +17,7 @@ struct PfvRestartRecord {
   pfv::FlowState flow;
   int steps_since_flow = 0;
   double elapsed = 0.0;  ///< s, since the last flow step
-  std::array<double, 6> last_positions{};
+  std::vector<double> last_positions;  ///< of the faces
   PfvSnapshot last_grains;
   std::vector<PfvWrittenStep> written;
 };

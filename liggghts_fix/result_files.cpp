@@ -50,7 +50,7 @@ std::string rows_until(const std::string& path, const std::string& header, doubl
 template <class Quantity>
 std::vector<double> plane_row(const pfv::FlowModel& flow, const PfvProfileOutput& profile,
                               const Quantity& quantity) {
-  const pfv::Box& box = flow.box();
+  const pfv::Container& box = flow.container();
   const double lower = box.lower[profile.axis], upper = box.upper[profile.axis];
   std::vector<double> row{flow.time()};
   for (int plane = 0; plane < profile.planes; ++plane)
@@ -187,7 +187,7 @@ std::vector<double> PfvResultFiles::flux_row(const pfv::FlowModel& flow) const {
 
 /// A sensor outside the flow box, which may shrink below it, reads the pressure of the nearest place.
 std::vector<double> PfvResultFiles::sensor_row(const pfv::FlowModel& flow) const {
-  const pfv::Box& box = flow.box();
+  const pfv::Container& box = flow.container();
   std::vector<double> row{flow.time()};
   for (const Eigen::Vector3d& place : sensors_->places)
     row.push_back(flow.pressure_at(place.cwiseMax(box.lower).cwiseMin(box.upper)));

@@ -15,12 +15,11 @@ namespace LAMMPS_NS {
 
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-Vector6 along_axes(const std::array<Eigen::Vector3d, 6>& forces) {
-  Vector6 result;
-  for (int face = 0; face < 6; ++face) result[face] = forces[face][face / 2];
+/// Along the ways that pistons would be guided.
+Eigen::VectorXd along_guides(const std::vector<Eigen::Vector3d>& forces, const pfv::Container& container) {
+  Eigen::VectorXd result(container.face_count());
+  for (int face = 0; face < container.face_count(); ++face)
+    result[face] = forces[face].dot(container.faces[face].guide);
   return result;
 }
 
@@ -31,21 +30,22 @@ Vector6 along_axes(const std::array<Eigen::Vector3d, 6>& forces) {
 /// answers such a motion as it would a steady one in steps of half the length: A p' = B p + q with
 /// p' = -p, where A = G + B, is (G + 2 B) p' = q. Rank 0. Cost: a solve for each face with a gain, and two
 /// factorisations where the fluid is compressible.
-Matrix6 FixPfv::resistances_to(const std::array<PfvServoGain, 6>& gains) {
-  const auto forces_in = [&](const pfv::Box& box) {
-    flow_->set_box(box);
+Eigen::MatrixXd FixPfv::resistances_to(const std::vector<PfvServoGain>& gains) {
+  const auto forces_in = [&](const pfv::Container& container) {
+    flow_->set_container(container);
     flow_->evaluate(grains_.packing(), 0.5 * flow_step());
-    return along_axes(flow_->face_forces());
+    return along_guides(flow_->face_forces(), container);
   };
-  Matrix6 resistances = Matrix6::Zero();
-  const Vector6 at_present = forces_in(box_);
-  for (int face = 0; face < 6; ++face) {
+  const int faces = container_.face_count();
+  Eigen::MatrixXd resistances = Eigen::MatrixXd::Zero(faces, faces);
+  const Eigen::VectorXd at_present = forces_in(container_);
+  for (int face = 0; face < faces; ++face) {
     if (!(gains[face].gain > 0.0)) continue;
-    pfv::Box moved = box_;
-    moved.faces[face].velocity += 1.0;
+    pfv::Container moved = container_;
+    moved.faces[face].velocity += moved.faces[face].guide;
     resistances.col(face) = at_present - forces_in(moved);
   }
-  flow_->set_box(box_);
+  flow_->set_container(container_);
   return resistances;
 }
 
@@ -55,19 +55,20 @@ Matrix6 FixPfv::resistances_to(const std::array<PfvServoGain, 6>& gains) {
 /// the setup.
 void FixPfv::check_servos() {
   constexpr double left_to_contacts = 0.5;
-  const std::array<PfvServoGain, 6> gains = faces_.proportional_gains();
-  Vector6 roots;
-  for (int face = 0; face < 6; ++face) roots[face] = std::sqrt(gains[face].gain);
+  const std::vector<PfvServoGain> gains = faces_.proportional_gains();
+  const int faces = static_cast<int>(gains.size());
+  Eigen::VectorXd roots(faces);
+  for (int face = 0; face < faces; ++face) roots[face] = std::sqrt(gains[face].gain);
   if (!settings_.steps.time_step_check || roots.isZero(0.0)) return;
-  const Matrix6 resistances = resistances_to(gains);
+  const Eigen::MatrixXd resistances = resistances_to(gains);
   // K R has the eigenvalues of this, which is symmetric as far as S is the transpose of E
-  const Matrix6 loop =
+  const Eigen::MatrixXd loop =
       roots.asDiagonal() * (0.5 * (resistances + resistances.transpose())) * roots.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solved(loop);
-  const double swing = solved.eigenvalues()[5];
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(loop);
+  const double swing = solved.eigenvalues()[faces - 1];
   if (!(swing > left_to_contacts)) return;
   int worst;
-  solved.eigenvectors().col(5).cwiseAbs().maxCoeff(&worst);
+  solved.eigenvectors().col(faces - 1).cwiseAbs().maxCoeff(&worst);
   const std::string text = swinging_servo(worst, gains[worst], resistances(worst, worst), swing);
   // A servo that the fluid alone cannot bring to its target moves with vel_max until grains help, and
   // only then swings; grains that follow within a step leave less of the resistance than is known here.
@@ -87,7 +88,7 @@ std::string FixPfv::swinging_servo(int face, const PfvServoGain& servo, double r
                 "servos %.4g; above 1, less what contacts take, the plate is thrown to and fro. Take kp %.3g "
                 "(and for other servos as much less), or make it a piston of mass m: kp 0 and ki "
                 "target/(vel_max m)",
-                pfv::name_of(pfv::all_faces[face]), settings_.sources[face].fix_id.c_str(),
+                face_name(settings_, face).c_str(), settings_.sources[face].fix_id.c_str(),
                 swing > 1.0 ? "swings" : "may swing", servo.gain, servo.kp, resistance,
                 servo.gain * resistance, swing, servo.kp * calm / swing);
   return text;

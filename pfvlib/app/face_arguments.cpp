@@ -27,7 +27,7 @@ std::string boundary_items(bool with_sealed = true) {
   return items;
 }
 
-std::string face_items() { return boundary_items() + ", wall=" + names_of<Wall>("|") + ", velocity=V"; }
+std::string face_items() { return boundary_items() + ", wall=" + names_of<Wall>("|") + ", velocity=V, spin=W"; }
 
 [[noreturn]] void fail(const std::string& where, const std::string& what) {
   throw InputError(where + ": " + what);
@@ -70,7 +70,7 @@ std::optional<Boundary> boundary_of(const std::string& where, const Item& item) 
 /// Collects the items of one face, which may come in several arguments.
 class FaceItems {
  public:
-  explicit FaceItems(FaceCondition& face) : face_(face) {}
+  explicit FaceItems(ContainerFace& face) : face_(face) {}
 
   void take(const std::string& where, const Item& item) {
     if (const auto boundary = boundary_of(where, item)) {
@@ -81,7 +81,14 @@ class FaceItems {
       face_.wall = wall_named(where, value_of(where, item));
     } else if (item.key == "velocity") {
       claim(where, "velocity", item);
-      face_.velocity = number(where, value_of(where, item));
+      if (!face_.surface.is_plane())
+        fail(where, "a cylinder has no axis to move along: use spin=W (rad/s, about its axis)");
+      face_.velocity = number(where, value_of(where, item)) * face_.guide;
+    } else if (item.key == "spin") {
+      claim(where, "spin", item);
+      if (face_.surface.is_plane()) fail(where, "spin=W is for cylinders: use velocity=V");
+      face_.angular_velocity = number(where, value_of(where, item)) * face_.surface.axis;
+      face_.pivot = face_.surface.point;
     } else {
       fail(where, "unknown item " + quoted(item.key) + ": use " + face_items());
     }
@@ -94,16 +101,16 @@ class FaceItems {
                       (subject == "boundary" ? "of " + boundary_items() : subject));
   }
 
-  FaceCondition& face_;
+  ContainerFace& face_;
   std::set<std::string> claimed_;
 };
 
-Face face_of(const std::string& where, const std::string& name) {
-  try {
-    return named<Face>(name);
-  } catch (const InputError& error) {
-    fail(where, error.what());
-  }
+/// Number of the face that is named.
+int face_of(const std::string& where, const std::string& name, const Container& container) {
+  if (const std::optional<int> face = container.face_named(name)) return *face;
+  std::string names;
+  for (const ContainerFace& face : container.faces) names += (names.empty() ? "" : ", ") + face.name;
+  fail(where, "unknown face " + quoted(name) + ": use " + names);
 }
 
 Boundary required_boundary(const std::string& where, const std::string& item, const std::string& items) {
@@ -112,14 +119,14 @@ Boundary required_boundary(const std::string& where, const std::string& item, co
   return *boundary;
 }
 
-Patch patch_of(const std::string& argument) {
+ContainerPatch patch_of(const std::string& argument, const Container& container) {
   const std::string where = "--patch " + quoted(argument);
   const std::vector<std::string> fields = parts(argument, ':');
   if (fields.size() != 3) fail(where, "write NAME:A0,A1,B0,B1:ITEM");
   const std::vector<std::string> rectangle = parts(fields[1], ',');
   if (rectangle.size() != 4) fail(where, "a rectangle has four numbers: write A0,A1,B0,B1");
-  Patch patch;
-  patch.face = face_of(where, fields[0]);
+  ContainerPatch patch;
+  patch.face = face_of(where, fields[0], container);
   for (std::size_t k = 0; k < rectangle.size(); ++k)
     patch.rectangle[k] = number(where, rectangle[k]);
   patch.boundary = required_boundary(where, fields[2], boundary_items());
@@ -166,9 +173,9 @@ Wall wall_named(const std::string& option, const std::string& name) {
   return Words({name}, option).choice<Wall>();
 }
 
-void apply_faces(const std::vector<std::string>& arguments, Wall wall, Box& box) {
+void apply_faces(const std::vector<std::string>& arguments, Wall wall, Container& container) {
   std::vector<FaceItems> faces;
-  for (FaceCondition& face : box.faces) {
+  for (ContainerFace& face : container.faces) {
     face.wall = wall;
     faces.emplace_back(face);
   }
@@ -177,20 +184,20 @@ void apply_faces(const std::vector<std::string>& arguments, Wall wall, Box& box)
     const std::size_t colon = argument.find(':');
     if (colon == std::string::npos)
       fail(where, std::string("no items: write NAME:ITEM[,ITEM]... with items ") + face_items());
-    const Face face = face_of(where, argument.substr(0, colon));
+    const int face = face_of(where, argument.substr(0, colon), container);
     for (const std::string& item : parts(argument.substr(colon + 1), ','))
-      faces[static_cast<std::size_t>(face)].take(where, item_of(item));
+      faces[face].take(where, item_of(item));
   }
 }
 
-void apply_patches(const std::vector<std::string>& arguments, Box& box) {
-  for (const std::string& argument : arguments) box.patches.push_back(patch_of(argument));
+void apply_patches(const std::vector<std::string>& arguments, Container& container) {
+  for (const std::string& argument : arguments) container.patches.push_back(patch_of(argument, container));
 }
 
 void apply_regions(const std::vector<std::string>& regions, const std::vector<std::string>& points,
-                   Box& box) {
-  for (const std::string& argument : regions) box.regions.push_back(region_of(argument));
-  for (const std::string& argument : points) box.regions.push_back(point_of(argument));
+                   Container& container) {
+  for (const std::string& argument : regions) container.regions.push_back(region_of(argument));
+  for (const std::string& argument : points) container.regions.push_back(point_of(argument));
 }
 
 }  // namespace pfv::app

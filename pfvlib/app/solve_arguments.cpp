@@ -49,15 +49,21 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
                      "spheres (m, m/s): CSV with header id,x,y,z,radius[,vx,vy,vz],\n"
                      "or a LIGGGHTS dump, of which the last snapshot is taken")
       ->required()->option_text("FILE (required)")->group(group);
-  command.add_option("--box", arguments.box, "flow box, m")
-      ->type_size(6)->expected(1)->required()
-      ->option_text("XLO XHI YLO YHI ZLO ZHI (required)")->group(group);
+  command.add_option("--box", arguments.box, "flow box, m; or")
+      ->type_size(6)->expected(1)->option_text("XLO XHI YLO YHI ZLO ZHI")->group(group);
+  command.add_option("--container", arguments.container,
+                     "planes at any angle, or a cylinder between two (doc/container.md):\n"
+                     "{\"planes\": [{\"name\", \"inward_normal\": [x,y,z], \"offset\"}, ...],\n"
+                     " \"cylinders\": [{\"name\", \"axis\", \"point\", \"radius\"}]}\n"
+                     "one of --box and --container is required")
+      ->option_text("FILE.json")->group(group);
   repeatable(command.add_option("--face", arguments.faces,
                      "condition on a face, may be given several times\n"
-                                "NAME  xlo | xhi | ylo | yhi | zlo | zhi\n"
+                                "NAME  xlo | xhi | ylo | yhi | zlo | zhi, or of the container\n"
                                 "ITEM  pressure=P (Pa) | flux=Q (m3/s, positive into the box) |\n"
                                 "      sealed | wall=no_slip|symmetry |\n"
-                                "      velocity=V (m/s, positive along +axis)\n"
+                                "      velocity=V (m/s, positive along +axis; along its inward\n"
+                                "      normal in a container) | spin=W (rad/s, a cylinder)\n"
                                 "(default: sealed, at rest)"))
       ->option_text("NAME:ITEM[,ITEM]...")->group(group);
   repeatable(command.add_option("--patch", arguments.patches,
@@ -100,6 +106,7 @@ void apply_periodic(const SolveArguments& arguments, Box& box) {
     box.pressure_gradient[static_cast<int>(axis)] = number("--gradient", arguments.gradient[axis]);
 }
 
+/// The six planes of --box.
 Box box_of(const SolveArguments& arguments) {
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
@@ -107,11 +114,22 @@ Box box_of(const SolveArguments& arguments) {
     box.upper[axis] = number("--box", arguments.box[2 * axis + 1]);
   }
   apply_periodic(arguments, box);
-  apply_faces(arguments.faces, wall_named("--wall", arguments.wall), box);
-  apply_patches(arguments.patches, box);
-  apply_regions(arguments.regions, arguments.points, box);
   check(box);
   return box;
+}
+
+Container container_of(const SolveArguments& arguments) {
+  if (arguments.container.has_value() == !arguments.box.empty())
+    throw InputError(arguments.container ? "--box and --container exclude each other: give one of them"
+                                         : "--box: it is missing: give the flow box, or a --container");
+  if (arguments.container && (!arguments.periodic.empty() || !arguments.gradient.empty()))
+    throw InputError("--periodic and --gradient need a --box");
+  Container container = arguments.container ? read_container(*arguments.container) : Container(box_of(arguments));
+  apply_faces(arguments.faces, wall_named("--wall", arguments.wall), container);
+  apply_patches(arguments.patches, container);
+  apply_regions(arguments.regions, arguments.points, container);
+  check(container);
+  return container;
 }
 
 /// Only what an output shows is computed: the report holds the sum of the forces.
@@ -241,7 +259,7 @@ void add_solve_options(CLI::App& command, SolveArguments& arguments) {
 SolveRequest request_of(const SolveArguments& arguments) {
   SolveRequest request;
   request.packing = arguments.packing;
-  request.box = box_of(arguments);
+  request.container = container_of(arguments);
   request.settings = settings_of(arguments);
   if (arguments.time_step) request.time_step = positive("--time-step", *arguments.time_step);
   request.repeat = repeats_of(arguments);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/settings.hpp"
 
 #include <CLI/CLI.hpp>
@@ -16,6 +16,7 @@ namespace pfv::app {
 /// would take "1abc" and "nan".
 struct SolveArguments {
   std::string packing;
+  std::optional<std::string> container;
   std::vector<std::string> box, faces, patches, regions, points, periodic, gradient;
   std::string wall = name_of(Wall::no_slip);
   std::map<std::string, std::vector<std::string>> settings;  ///< by the names of the table
@@ -26,7 +27,7 @@ struct SolveArguments {
 /// What `pfv solve` is to do.
 struct SolveRequest {
   std::string packing;
-  Box box;
+  Container container;
   Settings settings;
   double time_step = 0.0;  ///< s; 0: none
   int repeat = 0;          ///< further steps on the kept network

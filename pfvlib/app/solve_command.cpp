@@ -41,15 +41,15 @@ StepTimes repeat_steps(FlowModel& flow, const Packing& packing, const SolveReque
 
 /// Nothing drives the flow and nothing fixes the level of the pressure.
 bool is_unloaded(const SolveRequest& request, const Packing& packing) {
-  if (request.settings.fluid.bulk_modulus || !at_rest(packing, request.box)) return false;
+  if (request.settings.fluid.bulk_modulus || !at_rest(packing, request.container)) return false;
   const auto idle = [](const Boundary& boundary) {
     return !boundary.imposes_pressure() && !boundary.drives_flux();
   };
-  return std::all_of(request.box.faces.begin(), request.box.faces.end(),
-                     [&](const FaceCondition& face) { return idle(face.boundary); }) &&
-         std::all_of(request.box.patches.begin(), request.box.patches.end(),
-                     [&](const Patch& patch) { return idle(patch.boundary); }) &&
-         std::all_of(request.box.regions.begin(), request.box.regions.end(),
+  return std::all_of(request.container.faces.begin(), request.container.faces.end(),
+                     [&](const ContainerFace& face) { return idle(face.boundary); }) &&
+         std::all_of(request.container.patches.begin(), request.container.patches.end(),
+                     [&](const ContainerPatch& patch) { return idle(patch.boundary); }) &&
+         std::all_of(request.container.regions.begin(), request.container.regions.end(),
                      [&](const Region& region) { return idle(region.boundary); });
 }
 
@@ -107,9 +107,7 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
   write_permeability(report, out);
   out << "inflow " << report.inflow << " m3/s, outflow " << report.outflow << " m3/s\n";
   if (!request.forces && !request.report && !request.vtk)
-    for (const Face face : all_faces)
-      out << "flux " << name_of(face) << ' '
-          << report.faces[static_cast<std::size_t>(face)].flux << " m3/s\n";
+    for (const FaceResult& face : report.faces) out << "flux " << face.name << ' ' << face.flux << " m3/s\n";
 }
 
 }  // namespace
@@ -121,7 +119,7 @@ void solve(const SolveRequest& request, std::ostream& out, std::ostream& warning
 
   const Packing packing = arrays.view();
   const std::unique_ptr<FlowModel> model =
-      make_flow(request.box, request.settings.fluid, request.settings.options, request.settings.grid());
+      make_flow(request.container, request.settings.fluid, request.settings.options, request.settings.grid());
   FlowModel& flow = *model;
   try {
     flow.evaluate(packing, request.time_step);

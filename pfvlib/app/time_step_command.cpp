@@ -46,13 +46,15 @@ Eigen::VectorXd masses_of(const Packing& packing, const std::string& density) {
   return 4.0 / 3.0 * pi * positive("--grain-density", density) * packing.radii.array().cube();
 }
 
-std::array<Piston, 6> pistons_of(const std::vector<std::string>& arguments) {
-  std::array<Piston, 6> pistons;
+std::vector<Piston> pistons_of(const std::vector<std::string>& arguments, const Container& container) {
+  std::vector<Piston> pistons(container.faces.size());
   for (const std::string& argument : arguments) {
     const std::size_t colon = argument.find(':');
     if (colon == std::string::npos)
       throw InputError("--piston: " + detail::quoted(argument) + " is no NAME:MASS, e.g. zhi:0.5");
-    Piston& piston = pistons[static_cast<std::size_t>(named<Face>(argument.substr(0, colon)))];
+    const std::optional<int> face = container.face_named(argument.substr(0, colon));
+    if (!face) throw InputError("--piston: there is no face " + detail::quoted(argument.substr(0, colon)));
+    Piston& piston = pistons[*face];
     if (std::isfinite(piston.mass))
       throw InputError("--piston: face " + argument.substr(0, colon) + " occurs twice");
     piston.mass = positive("--piston", argument.substr(colon + 1));
@@ -109,16 +111,19 @@ SolveRequest problem_of(const TimeStepArguments& arguments) {
   problem.report = arguments.report;  // so that outputs that replace each other are refused
   problem.vtk = arguments.matrices;
   SolveRequest request = request_of(problem);
-  for (FaceCondition& face : request.box.faces) face.velocity = 0.0;
+  for (ContainerFace& face : request.container.faces) {
+    face.velocity.setZero();
+    face.angular_velocity.setZero();
+  }
   return request;
 }
 
-void add_contacts(const TimeStepArguments& arguments, const Packing& packing, const Box& box,
+void add_contacts(const TimeStepArguments& arguments, const Packing& packing, const Container& container,
                   const Eigen::VectorXd& masses, Limits& limits) {
   if (!arguments.stiffness) return;
   const double tangential =
       arguments.tangential ? number("--tangential-stiffness", *arguments.tangential) : 0.0;
-  const ContactSprings springs(packing, box,
+  const ContactSprings springs(packing, container,
                                {number("--contact-stiffness", *arguments.stiffness), tangential});
   const std::vector<Eigen::Matrix3d> stiffness = springs.of_spheres();
   for (Eigen::Index k = 0; k < packing.size(); ++k)
@@ -201,14 +206,14 @@ void add_time_step_options(CLI::App& command, TimeStepArguments& arguments) {
 
 void time_step(const TimeStepArguments& arguments, std::ostream& out) {
   const SolveRequest request = problem_of(arguments);
-  const std::array<Piston, 6> pistons = pistons_of(arguments.pistons);
+  const std::vector<Piston> pistons = pistons_of(arguments.pistons, request.container);
   const PackingArrays arrays = read_packing(request.packing);
   Packing packing = arrays.view();
   new (&packing.velocities) Eigen::Map<const Eigen::Matrix3Xd>(nullptr, 3, 0);
   const Eigen::VectorXd masses = masses_of(packing, arguments.grain_density);
   const std::vector<int> columns = chosen(arguments, packing);
 
-  Flow flow(request.box, request.settings.fluid, request.settings.options);
+  Flow flow(request.container, request.settings.fluid, request.settings.options);
   flow.evaluate(packing);
   const std::vector<Eigen::Matrix3d> matrices = flow.viscosity_matrices(columns);
   Limits limits;
@@ -220,7 +225,7 @@ void time_step(const TimeStepArguments& arguments, std::ostream& out) {
   for (Eigen::Index k = 0; k < packing.size(); ++k)
     limits.formula.take(estimated_time_step(masses[k], packing.radii[k], request.settings.fluid.viscosity),
                         packing.ids[k]);
-  add_contacts(arguments, packing, request.box, masses, limits);
+  add_contacts(arguments, packing, request.container, masses, limits);
   if (arguments.matrices)
     write_matrices(*arguments.matrices, packing, columns, matrices, request.settings.fluid.viscosity);
   if (arguments.report) write_report_of(*arguments.report, limits);

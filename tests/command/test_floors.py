@@ -5,7 +5,7 @@ import re
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2] / "pfvlib/src"
-FLOORS = ["text", "problem", "work", "parallel", "geometry", "network", "physics", "sparse", "solve", "step",
+FLOORS = ["text", "geometry", "problem", "work", "parallel", "network", "physics", "sparse", "solve", "step",
           "results", "flow", "darcy_grid", "io"]
 INCLUDE = re.compile(r'^#include "(\w+)/', re.MULTILINE)
 PUBLIC = "pfv"

@@ -7,8 +7,8 @@
 namespace support {
 
 /// These velocities of the spheres, which do not spin, and the faces as the box says.
-inline pfv::Motion motion_of(const Eigen::Matrix3Xd& velocities, const pfv::Box& box) {
-  pfv::Motion motion = pfv::Motion::Zero(6, velocities.cols() + 6);
+inline pfv::Motion motion_of(const Eigen::Matrix3Xd& velocities, const pfv::Container& box) {
+  pfv::Motion motion = pfv::Motion::Zero(6, velocities.cols() + box.face_count());
   motion.topLeftCorner(3, velocities.cols()) = velocities;
   pfv::set_faces(motion, box, box.lower);
   return motion;
@@ -36,7 +36,7 @@ inline Eigen::VectorXd reciprocal_rates(const Stages& s, const pfv::Motion& moti
 
 /// dV/dt by E.
 inline Eigen::VectorXd geometric_rates(const Stages& s, const Eigen::Matrix3Xd& velocities,
-                                       const pfv::Box& box) {
+                                       const pfv::Container& box) {
   pfv::Team alone;
   Eigen::VectorXd rates;
   pfv::volume_rates(pfv::volume_rate_matrix(s.network, s.spheres), motion_of(velocities, box), alone,

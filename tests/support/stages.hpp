@@ -6,7 +6,7 @@
 #include "network/pore_network.hpp"
 #include "physics/conductances.hpp"
 #include "physics/throats.hpp"
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/packing.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/pressure_system.hpp"
@@ -18,14 +18,14 @@ namespace support {
 
 /// Every stage up to the throats, for tests that look inside.
 struct Stages {
-  pfv::Box box;
+  pfv::Container box;
   pfv::Spheres spheres;
   pfv::PoreNetwork network;
   pfv::PoreBoundaries boundaries;
   pfv::Throats throats;
 };
 
-inline Stages stages_of(const pfv::PackingArrays& packing, const pfv::Box& box) {
+inline Stages stages_of(const pfv::PackingArrays& packing, const pfv::Container& box) {
   Stages s;
   s.box = box;
   s.spheres = pfv::select_grains(packing.view(), box, pfv::OutsideGrains::refuse).spheres;

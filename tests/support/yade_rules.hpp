@@ -77,7 +77,7 @@ inline YadeThroat yade_throat(const Stages& s, int facet_number, YadeRules rules
     const int v = facet[i];
     const int a = facet[(i + 1) % 3], b = facet[(i + 2) % 3];
     if (is_wall(v)) {
-      const pfv::FaceCondition& face = s.box.faces[pfv::wall_number(v)];
+      const pfv::ContainerFace& face = s.box.faces[pfv::wall_number(v)];
       if (rules.symmetry_factor && face.wall == pfv::Wall::symmetry)
         wall_factor /= std::sqrt(2.0);
       if (face.wall != pfv::Wall::no_slip ||

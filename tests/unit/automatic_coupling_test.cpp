@@ -71,7 +71,7 @@ TEST(AutomaticCoupling, WhatStandsAgainstLongStepsIsSaidWhereTheyAreNeeded) {
 
 TEST(TimeStepCheck, WarnsOfStepsBeyondTheLimitAndOfHeldPressuresBehindPistons) {
   Bed bed;
-  std::array<Piston, 6> pistons{};
+  std::vector<Piston> pistons(6);
   const auto check = [&](double ratio) {
     return check_time_step(bed.flow, bed.packing.view(), bed.masses, pistons,
                            ratio * bed.flow.time_step_limit(bed.masses, pistons));
@@ -98,7 +98,7 @@ int interval_after(int solves, Fluid fluid, double step_of_limit) {
   Bed bed(fluid);
   bed.packing.velocities.setZero();
   const double step = step_of_limit * bed.limit();
-  const std::array<Piston, 6> pistons{};
+  const std::vector<Piston> pistons(6);
   SolvePlan plan(1e-3);
   plan.restart();
   for (int solve = 0; solve < solves; ++solve) {

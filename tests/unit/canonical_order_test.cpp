@@ -89,7 +89,7 @@ void add_network(Record& record, const pfv::PoreNetwork& network, const pfv::Sph
   record.add("cell_centres", network.cell_centres);
   record.add("cell_pore", network.cell_pore);
   record.add("pore_centres", network.pore_centres);
-  for (const auto faces : network.pore_faces) record.add("pore_faces", int{faces});
+  for (const auto faces : network.pore_faces) record.add("pore_faces", static_cast<int>(faces));
   for (int f = 0; f < network.facets(); ++f) {
     for (const pfv::Vertex v : network.facet_vertices[f])
       add_vertex(record, "facet_vertices", v, vertices);

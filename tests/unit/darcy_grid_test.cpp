@@ -299,7 +299,7 @@ TEST(DarcyGrid, ALightPistonLowersTheTimeStepLimit) {
   DarcyGrid flow(box, support::viscosity_one(), grid_of(1, 1, 8));
   flow.evaluate(cubic(8).view());
   const double infinite = std::numeric_limits<double>::infinity(), mass = 1e-6;
-  std::array<pfv::Piston, 6> pistons;
+  std::vector<pfv::Piston> pistons = std::vector<pfv::Piston>(6);
   pistons[5].mass = mass;
   const double limit = flow.time_step_limit(Eigen::VectorXd::Constant(512, infinite), pistons);
   EXPECT_NEAR(limit * 1.03 / (2.0 * mass * cubic_permeability(8) / (1.0 - 1.0 / 16)), 1.0, 1e-3);

@@ -87,8 +87,9 @@ double mass_error_after(double error) {
   const auto built = pfv::derive_network(packing.view(), problem, work);
   pfv::factor_pressures(*built, problem, 0.0, work);
   pfv::Solution solution;
-  solution.box = box;
-  solution.growth = pfv::growth_of(box, built->grains.spheres.edges, 0.0);
+  solution.container = box;
+  solution.geometry = built->geometry;
+  solution.growth = pfv::growth_of(box, solution.geometry, *built, 0.0);
   pfv::ExplicitStep().find({*built, problem, packing.view(), nullptr, work}, solution);
   for (std::size_t p = 0; p < built->unknowns.of_pore.size(); ++p)
     if (built->unknowns.of_pore[p] != pfv::Unknowns::imposed)

@@ -78,7 +78,7 @@ struct Sample {
   Eigen::VectorXd masses = 2600.0 * 4.0 / 3.0 * pi * packing.radii.array().cube();
   Eigen::Matrix3Xd others = Eigen::Matrix3Xd::Zero(3, masses.size());
   Eigen::Matrix3Xd displacements = others;
-  std::array<pfv::Piston, 6> pistons;
+  std::vector<pfv::Piston> pistons = std::vector<pfv::Piston>(6);
   pfv::Flow flow;
 
   explicit Sample(double viscosity = 1.0, pfv::Box box = drained(), double bulk_modulus = 0.0)

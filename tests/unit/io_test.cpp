@@ -225,7 +225,7 @@ TEST_F(InputOutput, ReportHoldsNullForWhatHasNoMeaning) {
   report.spheres = 100;
   report.mass_error = std::numeric_limits<double>::quiet_NaN();
   report.solver = "supernodal";
-  report.faces[5].flux = -0.25;
+  report.faces.push_back({"zhi", -0.25});
   report.seconds.step = 0.5;
   pfv::write_report(path("report.json"), report);
   const auto json = nlohmann::json::parse(text("report.json"));

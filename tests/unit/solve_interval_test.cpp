@@ -2,6 +2,7 @@
 // When the flow is solved between grains that move little (`couple_every auto`).
 #include "pfv/solve_interval.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -25,8 +26,8 @@ struct Host {
     pfv::Forces forces;
     forces.total = Eigen::Matrix3Xd::Constant(3, ids.size(), mean);
     forces.torque = forces.total;
-    std::array<Eigen::Vector3d, 6> faces;
-    faces.fill(Eigen::Vector3d::Zero());
+    std::vector<Eigen::Vector3d> faces(6);
+    std::fill(faces.begin(), faces.end(), Eigen::Vector3d::Zero());
     faces[5] = Eigen::Vector3d(0.0, 0.0, mean);
     interval.take(ids, forces, faces, steps, 1.0, 1.0, 0.1, most);
     ++solves;
@@ -89,8 +90,8 @@ TEST(SolveInterval, ANewNetworkIsNoChangeInTime) {
   const int before = host.interval.steps();
   pfv::Forces forces;
   forces.total = forces.torque = Eigen::Matrix3Xd::Constant(3, 2, 0.6);
-  std::array<Eigen::Vector3d, 6> faces;
-  faces.fill(Eigen::Vector3d(0.0, 0.0, 0.6));
+  std::vector<Eigen::Vector3d> faces(6);
+  std::fill(faces.begin(), faces.end(), Eigen::Vector3d(0.0, 0.0, 0.6));
   host.interval.take(host.ids, forces, faces, before, 1.0, 1.0, 0.1, any, true);
   EXPECT_EQ(host.interval.steps(), before);
   EXPECT_EQ(host.interval.largest_error(), 0.0);
@@ -107,8 +108,8 @@ TEST(SolveInterval, LoadsOfAnotherNetworkAreHeldAndLeaveWhatIsKnownOfTime) {
   growing.take(growing.load(now), before);
   pfv::Forces forces;
   forces.total = forces.torque = Eigen::Matrix3Xd::Constant(3, 2, growing.load(now) + jump);
-  std::array<Eigen::Vector3d, 6> faces;
-  faces.fill(Eigen::Vector3d::Zero());
+  std::vector<Eigen::Vector3d> faces(6);
+  std::fill(faces.begin(), faces.end(), Eigen::Vector3d::Zero());
   faces[5] = Eigen::Vector3d(0.0, 0.0, growing.load(now) + jump);
   growing.interval.put_on_network(forces, faces);
   EXPECT_NEAR(growing.interval.held().slope(0, 0), 1e-4, 1e-12);

@@ -88,7 +88,7 @@ TEST(TimeStepLimit, GoesWithTheMassesAndWithOneOverTheViscosity) {
   EXPECT_NEAR(sample.flow.time_step_limit(4.0 * sample.masses) / limit, 4.0, 1e-12);
   pfv::Fluid thick = viscosity_one();
   thick.viscosity = 8.0;
-  pfv::Flow flow(sample.flow.box(), thick, with_torques());
+  pfv::Flow flow(sample.flow.container(), thick, with_torques());
   flow.evaluate(sample.packing.view());
   EXPECT_NEAR(flow.time_step_limit(sample.masses) * 8.0 / limit, 1.0, 1e-12);
 }

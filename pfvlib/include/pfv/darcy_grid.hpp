@@ -27,7 +27,7 @@ struct DarcyData;
 /// viscous part is the drag), buoyancy and sphere_pressure; periodic axes are refused.
 class DarcyGrid final : public FlowModel {
  public:
-  DarcyGrid(Box box, Fluid fluid, DarcyOptions grid, Options options = {});
+  DarcyGrid(Container box, Fluid fluid, DarcyOptions grid, Options options = {});
   ~DarcyGrid() override;
   DarcyGrid(DarcyGrid&&) noexcept;
   DarcyGrid& operator=(DarcyGrid&&) noexcept;
@@ -36,8 +36,8 @@ class DarcyGrid final : public FlowModel {
   const Forces& advance(const Packing& packing, double dt, const Step& step = {}) override;
   void rebuild() override;
 
-  void set_box(const Box& box) override;
-  const Box& box() const override;
+  void set_container(const Container& box) override;
+  const Container& container() const override;
   const Fluid& fluid() const override;
   const DarcyOptions& grid() const;
 
@@ -48,15 +48,15 @@ class DarcyGrid final : public FlowModel {
 
   // results of the last call
   const Forces& forces() const override;
-  const std::array<FaceResult, 6>& faces() const override;
-  std::array<Eigen::Vector3d, 6> face_forces() const override;
+  const std::vector<FaceResult>& faces() const override;
+  std::vector<Eigen::Vector3d> face_forces() const override;
   /// Linear in each cell.
   double pressure_at(const Eigen::Vector3d& place) const override;
   double plane_pressure(int axis, double position) const override;
   double mean_pressure() const override;
   /// With the drag of the last call, linearised. Cost: some 20 to 40 solves.
   double time_step_limit(const Eigen::VectorXd& masses,
-                         const std::array<Piston, 6>& pistons = {}) override;
+                         const std::vector<Piston>& pistons = {}) override;
   /// Looks at the porosity after the first.
   std::int64_t retriangulations() const override;
   std::vector<int> hidden() const override { return {}; }  ///< every grain displaces fluid
@@ -80,7 +80,7 @@ class DarcyGrid final : public FlowModel {
 };
 
 /// A `DarcyGrid` where there is a grid, else a `Flow`.
-std::unique_ptr<FlowModel> make_flow(const Box& box, const Fluid& fluid, const Options& options,
+std::unique_ptr<FlowModel> make_flow(const Container& box, const Fluid& fluid, const Options& options,
                                      const std::optional<DarcyOptions>& grid);
 
 }  // namespace pfv

@@ -4,7 +4,6 @@
 #include "pfv/flow_model.hpp"
 #include "pfv/network.hpp"
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -34,7 +33,7 @@ struct SliceMeans {
 /// displaced by more than its radius, or until `rebuild` asks for it.
 class Flow final : public FlowModel {
  public:
-  Flow(Box box, Fluid fluid, Options options = {});
+  Flow(Container container, Fluid fluid, Options options = {});
   ~Flow() override;
   Flow(Flow&&) noexcept;
   Flow& operator=(Flow&&) noexcept;
@@ -48,8 +47,8 @@ class Flow final : public FlowModel {
   void rebuild() override;
 
   /// Between two triangulations faces move with the network, like grains.
-  void set_box(const Box& box) override;
-  const Box& box() const override;
+  void set_container(const Container& container) override;
+  const Container& container() const override;
   const Fluid& fluid() const override;
   const Options& options() const;
   /// Another measure begins with a new network.
@@ -64,8 +63,8 @@ class Flow final : public FlowModel {
   const Forces& forces() const override;
   /// Cost, once a call: one solve (which takes the fluxes beyond the round-off of the pressures) and
   /// two passes over the throats.
-  const std::array<FaceResult, 6>& faces() const override;
-  std::array<Eigen::Vector3d, 6> face_forces() const override;
+  const std::vector<FaceResult>& faces() const override;
+  std::vector<Eigen::Vector3d> face_forces() const override;
   /// Pa, one entry a pore of `network()`.
   const Eigen::VectorXd& pore_pressures() const;
   /// Pressure of the tetrahedron that contains the place.
@@ -77,7 +76,7 @@ class Flow final : public FlowModel {
   /// dt < 2 / lambda_max(M^-1 S G^-1 E). Cost: some 20 to 40 solves for a new network, none when it
   /// was asked before.
   double time_step_limit(const Eigen::VectorXd& masses,
-                         const std::array<Piston, 6>& pistons = {}) override;
+                         const std::vector<Piston>& pistons = {}) override;
   /// V^k of these spheres (columns of the packing): the fluid answers the velocity v of sphere k alone,
   /// all others, faces and imposed pressures held, with the force -V^k v on it, N s/m (thesis
   /// eqs. 4.10-4.16); 0 for hidden and left-out spheres. Cost: three solves a sphere, on the kept factor.

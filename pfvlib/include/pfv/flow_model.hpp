@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/fields.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
 #include "pfv/packing.hpp"
 #include "pfv/report.hpp"
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -37,11 +36,15 @@ struct FlowState {
   double fluid_at_start = 0.0, fluid_came_in = 0.0;  ///< m³, for the fluid's balance; 0: it begins anew
 };
 
-/// A face that moves freely along its axis: a piston. By default its velocity is prescribed.
+/// A face that moves freely along its guide (of a box: its axis): a piston. By default its velocity is prescribed.
 struct Piston {
   double mass = std::numeric_limits<double>::infinity();  ///< kg, > 0; infinite: prescribed velocity
-  double other_force = 0.0;  ///< N along +axis, beside that of the fluid: load, contacts
+  double other_force = 0.0;  ///< N along the guide, beside that of the fluid: load, contacts
 };
+/// Of face number `face`; faces beyond the list are none.
+inline Piston piston_of(const std::vector<Piston>& pistons, int face) {
+  return face < static_cast<int>(pistons.size()) ? pistons[face] : Piston{};
+}
 
 /// What a staged or implicit step must know of the grains, one entry (or column) a sphere of the
 /// packing, and of the faces.
@@ -49,7 +52,7 @@ struct GrainDynamics {
   Eigen::Map<const Eigen::VectorXd> masses{nullptr, 0};  ///< kg, > 0; infinite: a grain whose velocity
                                                          ///< is prescribed (frozen, moved by force)
   Eigen::Map<const Eigen::Matrix3Xd> other_forces{nullptr, 3, 0};  ///< N: contacts, gravity, ...
-  std::array<Piston, 6> pistons{};  ///< in the order xlo ... zhi
+  std::vector<Piston> pistons;  ///< in the order of the faces; none: all velocities are prescribed
   Eigen::Map<const Eigen::Matrix3Xd> other_torques{nullptr, 3, 0};  ///< N m; empty: none
   Eigen::Map<const Eigen::VectorXd> inertias{nullptr, 0};  ///< kg m²; empty: 2/5 m r²; infinite: a grain that
                                                            ///< keeps its spin
@@ -117,8 +120,9 @@ class FlowModel {
   /// New positions, velocities or boundary values of faces, patches and regions. Values cost nothing;
   /// another kind of boundary, another wall type, or other extents lead to a rebuild. Positions
   /// take effect at the next rebuild.
-  virtual void set_box(const Box& box) = 0;
-  virtual const Box& box() const = 0;
+  virtual void set_container(const Container& container) = 0;
+  void set_box(const Box& box) { set_container(box); }
+  virtual const Container& container() const = 0;
   virtual const Fluid& fluid() const = 0;
 
   virtual double time() const = 0;    ///< s, that was advanced
@@ -129,10 +133,10 @@ class FlowModel {
 
   // results of the last call
   virtual const Forces& forces() const = 0;
-  virtual const std::array<FaceResult, 6>& faces() const = 0;
+  virtual const std::vector<FaceResult>& faces() const = 0;
   /// Force of the fluid on each face alone, N: cheap enough for every step.
-  virtual std::array<Eigen::Vector3d, 6> face_forces() const = 0;
-  /// Pa, at a place (m). Throws InputError outside the box.
+  virtual std::vector<Eigen::Vector3d> face_forces() const = 0;
+  /// Pa, at a place (m). Throws InputError outside the container.
   virtual double pressure_at(const Eigen::Vector3d& place) const = 0;
   /// Mean pressure (Pa) over the plane (axis 0-2, position in m); NaN-free: throws InputError for a
   /// plane that cuts nothing.
@@ -143,10 +147,10 @@ class FlowModel {
   /// the kept factor (masses in kg, one a sphere of the last packing; faces that are pistons count with
   /// theirs). Infinite where nothing resists.
   virtual double time_step_limit(const Eigen::VectorXd& masses,
-                                 const std::array<Piston, 6>& pistons = {}) = 0;
+                                 const std::vector<Piston>& pistons = {}) = 0;
   virtual std::int64_t retriangulations() const = 0;  ///< rebuilds after the first
   virtual std::vector<int> hidden() const = 0;  ///< columns of the packing that the fluid cannot see
-  /// Hidden spheres plus those left out because their centre is outside the box.
+  /// Hidden spheres plus those left out because their centre is outside the container.
   virtual std::int64_t hidden_or_outside() const = 0;
 
   /// Balances, permeability, counts, times of everything done so far.

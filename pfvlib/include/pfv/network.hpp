@@ -8,11 +8,16 @@
 
 namespace pfv {
 
-/// A vertex of a tetrahedron: k >= 0 is sphere k, -1 ... -6 are the walls xlo ... zhi.
+/// A vertex of a tetrahedron: k >= 0 is sphere k, -1, -2, ... are the walls in the order of the
+/// container's faces (xlo ... zhi of a box).
 using Vertex = int;
 inline bool is_wall(Vertex vertex) { return vertex < 0; }
 inline int wall_number(Vertex vertex) { return -1 - vertex; }
 inline Vertex wall_vertex(int face) { return -1 - face; }
+
+/// Some faces of a container: bit f is face f.
+using FaceSet = std::uint64_t;
+inline FaceSet face_bit(int face) { return FaceSet{1} << face; }
 
 /// The pore space as a graph (Chareyre et al. 2012, sec. 2): plain arrays, indices only.
 ///
@@ -25,14 +30,14 @@ inline Vertex wall_vertex(int face) { return -1 - face; }
 /// computed on it do not depend on the order of the packing's columns, nor on who triangulated:
 /// - cells by the first of their spheres along a Hilbert curve through the box, then by the second, and so
 ///   on, walls last; pores by their first cell;
-/// - the vertices of a cell by ids, then walls from xlo to zhi, but for the last two spheres (or walls, with
+/// - the vertices of a cell by ids, then walls in their order, but for the last two spheres (or walls, with
 ///   fewer than three spheres), which the orientation may exchange; a facet of three spheres begins with
 ///   its lowest id; images of one sphere count by place;
 /// - a throat goes from the pore with the smaller number to the larger, and throats stand by their first
 ///   pores, then by their second ones (then by the image). The facets of a throat stand by the smaller of
 ///   their two cells; within a merged pore that is cell 0.
 struct PoreNetwork {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< lower corner of the box: all places below
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< lower corner of the box around the container: all places below
                                                      ///< are relative to it, m
 
   /// The sphere that a vertex k >= 0 stands for: k itself without periodic axes; with them vertices are
@@ -47,7 +52,7 @@ struct PoreNetwork {
 
   // one entry a pore
   Eigen::Matrix3Xd pore_centres;        ///< m
-  std::vector<std::uint8_t> pore_faces;  ///< bit f is set when the pore touches face f
+  std::vector<FaceSet> pore_faces;  ///< bit f is set when the pore touches face f
 
   // one entry a facet; the facets of throat t are [throat_facets[t], throat_facets[t + 1]), those
   // inside merged pores come after the last throat

@@ -12,7 +12,8 @@ namespace pfv {
 
 /// What crosses a face and pushes on it.
 struct FaceResult {
-  double flux = 0.0;                                          ///< m³/s, positive INTO the box
+  std::string name;
+  double flux = 0.0;                                          ///< m³/s, positive INTO the container
   Eigen::Vector3d force_pressure = Eigen::Vector3d::Zero();   ///< N, of the fluid on the face
   Eigen::Vector3d force_viscous = Eigen::Vector3d::Zero();    ///< N, of the fluid on the face
 };
@@ -74,7 +75,7 @@ struct Report {
   double residual = 0;
   std::string solver, ordering, conductance;
   std::string solver_made_of;  ///< which code ordered, analysed, factored and solved
-  std::array<FaceResult, 6> faces;
+  std::vector<FaceResult> faces;
   std::vector<OpeningResult> openings;  ///< the patches, then the regions, in their order
   Counts counts;
   Seconds seconds;

@@ -4,8 +4,8 @@
 #include "pfv/flow_model.hpp"
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
+#include <vector>
 
 namespace pfv {
 
@@ -13,7 +13,7 @@ namespace pfv {
 /// the loads of the last solve and how they are expected to change, each step.
 struct HeldLoads {
   Eigen::Matrix<double, 6, Eigen::Dynamic> slope;  ///< force (N) and torque (N m) a step; zeros: held
-  std::array<Eigen::Vector3d, 6> face_slope{};     ///< N a step
+  std::vector<Eigen::Vector3d> face_slope;         ///< N a step; none before the first solve
   double offset = 0.0;  ///< steps before the last solve that its loads belong to: the middle of its interval
 };
 
@@ -38,12 +38,12 @@ class SolveInterval {
   /// sooner. `ids`: of the grains; another set begins anew. `new_network`: the first solve on it, whose loads
   /// differ from the last by no change in time alone: the interval stays.
   void take(const Packing::Ids& ids, const Forces& forces,
-            const std::array<Eigen::Vector3d, 6>& faces, int steps, double face_load,
+            const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
             double face_area, double section, int most, bool new_network = false);
 
   /// The loads of the same instant on another network, right after `take`: from here on they are held, and
   /// what the last solve said of the change in time stays.
-  void put_on_network(const Forces& forces, const std::array<Eigen::Vector3d, 6>& faces);
+  void put_on_network(const Forces& forces, const std::vector<Eigen::Vector3d>& faces);
 
   int steps() const { return steps_; }       ///< from the last solve to the next
   const HeldLoads& held() const { return held_; }
@@ -58,7 +58,7 @@ class SolveInterval {
   struct Errors {
     double held, continued;
   };
-  Errors errors_of(const Forces& forces, const std::array<Eigen::Vector3d, 6>& faces,
+  Errors errors_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces,
                    double face_scale, double grain_scale, double apart) const;
   void choose(Errors errors, int most);
 
@@ -69,7 +69,7 @@ class SolveInterval {
   Errors memory_{0.0, 0.0};  ///< of the errors over the steps, or their square: it fades
   Packing::Ids ids_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> last_, trend_;  ///< loads, and their change a step
-  std::array<Eigen::Vector3d, 6> last_faces_{}, face_trend_{};
+  std::vector<Eigen::Vector3d> last_faces_, face_trend_;
   HeldLoads held_;
 };
 

@@ -13,7 +13,7 @@ namespace pfv {
 struct SolvedInstant {
   const Packing& packing;
   const Eigen::VectorXd& masses;           ///< kg, one a sphere; infinite: its velocity is prescribed
-  const std::array<Piston, 6>& pistons;
+  const std::vector<Piston>& pistons;
   int steps;                               ///< of the host since the last solve
   double step;                             ///< of the host, s
   double motion;                           ///< sum of |v| r² of the grains, m³/s
@@ -68,6 +68,6 @@ class SolvePlan {
 };
 
 /// Whether the values of two boxes' boundaries differ by more than this part of the largest of them.
-bool imposed_values_differ(const Box& now, const Box& then, double tolerance);
+bool imposed_values_differ(const Container& now, const Container& then, double tolerance);
 
 }  // namespace pfv

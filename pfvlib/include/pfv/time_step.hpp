@@ -37,7 +37,7 @@ struct TimeStepCheck {
 /// Of a model that holds a result. `masses` in kg, one a sphere of `packing`; `step`, s, between two solves.
 /// Cost: that of FlowModel::time_step_limit.
 TimeStepCheck check_time_step(FlowModel& flow, const Packing& packing, const Eigen::VectorXd& masses,
-                              const std::array<Piston, 6>& pistons, double step);
+                              const std::vector<Piston>& pistons, double step);
 
 /// What a host that solves every `held` of its steps should be warned of, a line each. `safety`: part of the limit
 /// that a step may reach; `remedy`: what it can take instead of a shorter step, or why there is nothing.
@@ -56,7 +56,7 @@ class ContactSprings {
  public:
   /// Throws InputError for a stiffness that is not finite, a normal one <= 0 or a tangential one < 0.
   /// Cost: a sort and a sweep along x.
-  ContactSprings(const Packing& packing, const Box& box, ContactStiffness stiffness);
+  ContactSprings(const Packing& packing, const Container& container, ContactStiffness stiffness);
   /// K^k of each sphere, N/m, all others held. Rotations are left out.
   std::vector<Eigen::Matrix3d> of_spheres() const;
   /// 2 / omega_max of all spheres together, s: the limit of the contacts alone without dashpots. Infinite

@@ -208,7 +208,8 @@ void DarcyData::compute_forces(const Packing& packing, const Eigen::Matrix3Xd& v
 }
 
 void DarcyData::sum_faces() {
-  last.faces = {};
+  last.faces.assign(box.faces.size(), {});
+  for (std::size_t f = 0; f < box.faces.size(); ++f) last.faces[f].name = box.faces[f].name;
   const BuiltGrid& b = *built;
   for (std::size_t f = 0; f < b.faces.size(); ++f) {
     const auto i = static_cast<Eigen::Index>(f);
@@ -230,7 +231,7 @@ void DarcyData::check_masses(const Eigen::VectorXd& masses) const {
 }
 
 /// Change of the pressures where grains and faces of `moved` change their velocities, which `change` gets.
-GridFields DarcyData::response_to(const Eigen::Matrix3Xd& velocities, const Box& moved,
+GridFields DarcyData::response_to(const Eigen::Matrix3Xd& velocities, const Container& moved,
                                   CellState& change) {
   const BuiltGrid& b = *built;
   const auto count = static_cast<Eigen::Index>(b.faces.size());
@@ -250,15 +251,16 @@ GridFields DarcyData::response_to(const Eigen::Matrix3Xd& velocities, const Box&
 
 /// The drag of the last call as an operator on small changes of the velocities of grains and faces.
 double DarcyData::time_step_limit(const Eigen::VectorXd& masses,
-                                  const std::array<Piston, 6>& pistons) {
+                                  const std::vector<Piston>& pistons) {
   check_masses(masses);
   const BuiltGrid& b = *built;
   const int spheres = b.grains.spheres.size();
   CellState change = last.cells;
-  Box moved = box;
+  Container moved = box;
+  const int face_count = box.face_count();
   const auto drag = [&](const Eigen::VectorXd& v) {
     const Eigen::Matrix3Xd velocities = v.head(3 * spheres).reshaped(3, spheres);
-    for (int f = 0; f < face_count; ++f) moved.faces[f].velocity = v[3 * spheres + f];
+    for (int f = 0; f < face_count; ++f) moved.faces[f].velocity = v[3 * spheres + f] * box.faces[f].guide;
     const GridFields answer = response_to(velocities, moved, change);
     const GrainForces force = grain_forces(b.overlaps, last.coefficients, change, velocities);
     Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(v.size());
@@ -269,7 +271,7 @@ double DarcyData::time_step_limit(const Eigen::VectorXd& masses,
       const Face face = b.faces[f].face;
       acceleration[3 * spheres + static_cast<int>(face)] -=
           (is_upper(face) ? 1.0 : -1.0) * answer.face_pressure[static_cast<Eigen::Index>(f)] *
-          b.grid.face_area(axis_of(face)) / pistons[static_cast<int>(face)].mass;
+          b.grid.face_area(axis_of(face)) / piston_of(pistons, static_cast<int>(face)).mass;
     }
     return acceleration;
   };

@@ -27,7 +27,7 @@ struct BuiltGrid {
 
 /// What one call has found: a value, with the grid that it was found on.
 struct GridSolution {
-  Box box;                          ///< as it was then
+  Container box;                          ///< as it was then
   bool moving = false;
   double reference = 0.0;           ///< pressure that was subtracted before solving, Pa
   Eigen::VectorXd rates;            ///< m³/s, that moving grains push out of each cell
@@ -38,12 +38,12 @@ struct GridSolution {
   Eigen::VectorXd coefficients;     ///< of the drag, one a part of the overlaps
   Eigen::VectorXd pressures;        ///< Pa
   Eigen::Vector3d grain_sum = Eigen::Vector3d::Zero();  ///< N, of the flow on all grains
-  std::array<FaceResult, 6> faces;
+  std::vector<FaceResult> faces;
 };
 
 /// The state behind DarcyGrid.
 struct DarcyData {
-  Box box;
+  Container box;
   Fluid fluid;
   DarcyOptions grid_options;
   Options options;
@@ -63,7 +63,7 @@ struct DarcyData {
   Forces forces;
 
   const Forces& compute(const Packing& packing, double at_time, bool advance);
-  double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
+  double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons);
   void require_result() const;
 
  private:
@@ -76,7 +76,7 @@ struct DarcyData {
   void compute_forces(const Packing& packing, const Eigen::Matrix3Xd& velocities);
   void sum_faces();
   void check_masses(const Eigen::VectorXd& masses) const;
-  GridFields response_to(const Eigen::Matrix3Xd& velocities, const Box& moved, CellState& change);
+  GridFields response_to(const Eigen::Matrix3Xd& velocities, const Container& moved, CellState& change);
 };
 
 /// Balances, counts and times, from the last call.

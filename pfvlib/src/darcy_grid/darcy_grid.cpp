@@ -20,20 +20,21 @@ void refuse_if(bool given, const char* what) {
                      ": leave it away, or use the model pfv");
 }
 
-void refuse_what_has_no_cells(const Box& box) {
+void refuse_what_has_no_cells(const Container& box) {
+  refuse_if(!box.is_box, "container but a box");
   refuse_if(box.any_periodic(), "periodic axes");
   refuse_if(!box.regions.empty(), "regions");
 }
 
 }  // namespace
 
-std::unique_ptr<FlowModel> make_flow(const Box& box, const Fluid& fluid, const Options& options,
+std::unique_ptr<FlowModel> make_flow(const Container& box, const Fluid& fluid, const Options& options,
                                      const std::optional<DarcyOptions>& grid) {
   if (grid) return std::make_unique<DarcyGrid>(box, fluid, *grid, options);
   return std::make_unique<Flow>(box, fluid, options);
 }
 
-DarcyGrid::DarcyGrid(Box box, Fluid fluid, DarcyOptions grid, Options options)
+DarcyGrid::DarcyGrid(Container box, Fluid fluid, DarcyOptions grid, Options options)
     : data_(std::make_unique<DarcyData>()) {
   check(box);
   check(fluid);
@@ -60,14 +61,14 @@ const Forces& DarcyGrid::advance(const Packing& packing, double dt, const Step& 
 
 void DarcyGrid::rebuild() { data_->stale = true; }
 
-void DarcyGrid::set_box(const Box& box) {
+void DarcyGrid::set_container(const Container& box) {
   check(box);
   refuse_what_has_no_cells(box);
   if (!same_kinds(data_->box, box)) data_->stale = true;
   data_->box = box;
 }
 
-const Box& DarcyGrid::box() const { return data_->box; }
+const Container& DarcyGrid::container() const { return data_->box; }
 const Fluid& DarcyGrid::fluid() const { return data_->fluid; }
 const DarcyOptions& DarcyGrid::grid() const { return data_->grid_options; }
 double DarcyGrid::time() const { return data_->time; }
@@ -84,14 +85,14 @@ const Forces& DarcyGrid::forces() const {
   return data_->forces;
 }
 
-const std::array<FaceResult, 6>& DarcyGrid::faces() const {
+const std::vector<FaceResult>& DarcyGrid::faces() const {
   data_->require_result();
   return data_->last.faces;
 }
 
-std::array<Eigen::Vector3d, 6> DarcyGrid::face_forces() const {
-  std::array<Eigen::Vector3d, 6> forces;
-  for (int f = 0; f < face_count; ++f) forces[f] = faces()[f].force_pressure;
+std::vector<Eigen::Vector3d> DarcyGrid::face_forces() const {
+  std::vector<Eigen::Vector3d> forces;
+  for (const FaceResult& face : faces()) forces.push_back(face.force_pressure);
   return forces;
 }
 
@@ -134,7 +135,7 @@ double DarcyGrid::mean_pressure() const {
 }
 
 double DarcyGrid::time_step_limit(const Eigen::VectorXd& masses,
-                                  const std::array<Piston, 6>& pistons) {
+                                  const std::vector<Piston>& pistons) {
   data_->require_result();
   return data_->time_step_limit(masses, pistons);
 }

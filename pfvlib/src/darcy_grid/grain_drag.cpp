@@ -29,7 +29,7 @@ Eigen::Matrix3Xd grain_velocities(const SolidOverlaps& overlaps,
   return sum;
 }
 
-Eigen::VectorXd volume_rates(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+Eigen::VectorXd volume_rates(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                              const SolidOverlaps& overlaps,
                              const Eigen::Matrix3Xd& cell_velocities) {
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(grid.size());
@@ -48,7 +48,8 @@ Eigen::VectorXd volume_rates(const Grid& grid, const std::vector<GridFace>& face
     }
   }
   for (const GridFace& face : faces)
-    rates[face.cell] += (is_upper(face.face) ? 1.0 : -1.0) * box[face.face].velocity *
+    rates[face.cell] += (is_upper(face.face) ? 1.0 : -1.0) *
+                        box.faces[static_cast<int>(face.face)].velocity[axis_of(face.face)] *
                         grid.face_area(axis_of(face.face));
   return rates;
 }

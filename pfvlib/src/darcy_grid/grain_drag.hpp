@@ -24,7 +24,7 @@ Eigen::Matrix3Xd grain_velocities(const SolidOverlaps& overlaps,
 /// Volume that moving grains push out of each cell, m³/s: across a face between cells goes the mean
 /// of the grains in both, by volume, at a face of the box its own velocity. Adds up to the rate of
 /// the box.
-Eigen::VectorXd volume_rates(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+Eigen::VectorXd volume_rates(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                              const SolidOverlaps& overlaps,
                              const Eigen::Matrix3Xd& cell_velocities);
 

@@ -17,14 +17,14 @@ struct Rectangle {
   double a0, a1, b0, b1;
 };
 
-Rectangle rectangle_of(const Patch& patch, const Box& box) {
-  const int axis = axis_of(patch.face);
+Rectangle rectangle_of(const ContainerPatch& patch, const Container& box) {
+  const int axis = axis_of(static_cast<Face>(patch.face));
   const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
   const auto& r = patch.rectangle;
   return {a, b, r[0] - box.lower[a], r[1] - box.lower[a], r[2] - box.lower[b], r[3] - box.lower[b]};
 }
 
-void apply(const Patch& patch, int number, const Grid& grid, const Box& box,
+void apply(const ContainerPatch& patch, int number, const Grid& grid, const Container& box,
            std::vector<GridFace>& faces) {
   const Rectangle r = rectangle_of(patch, box);
   // borders belong to the patch, rounding or not
@@ -33,7 +33,7 @@ void apply(const Patch& patch, int number, const Grid& grid, const Box& box,
   double smallest = std::numeric_limits<double>::infinity();
   bool any = false;
   for (GridFace& face : faces) {
-    if (face.face != patch.face) continue;
+    if (static_cast<int>(face.face) != patch.face) continue;
     const Eigen::Vector3d x = middle_of(grid, face);
     const double a = x[r.axis_a], b = x[r.axis_b];
     if (a >= r.a0 - slack_a && a <= r.a1 + slack_a && b >= r.b0 - slack_b && b <= r.b1 + slack_b) {
@@ -60,7 +60,7 @@ int Grid::cell_at(const Eigen::Vector3d& position) const {
   return index(at);
 }
 
-Grid make_grid(const Box& box, const std::array<int, 3>& counts) {
+Grid make_grid(const Container& box, const std::array<int, 3>& counts) {
   Grid grid;
   grid.counts = counts;
   for (int axis = 0; axis < 3; ++axis)
@@ -73,13 +73,13 @@ Eigen::Vector3d middle_of(const Grid& grid, const GridFace& face) {
          0.5 * grid.lengths.cwiseProduct(outward_normal(face.face));
 }
 
-std::vector<GridFace> boundary_faces(const Grid& grid, const Box& box) {
+std::vector<GridFace> boundary_faces(const Grid& grid, const Container& box) {
   std::vector<GridFace> faces;
   for (const Face face : all_faces)
     for (int cell = 0; cell < grid.size(); ++cell)
       if (grid.neighbour(cell, face) < 0) faces.push_back({cell, face, static_cast<int>(face)});
   for (std::size_t i = 0; i < box.patches.size(); ++i)
-    apply(box.patches[i], patch_number(i), grid, box, faces);
+    apply(box.patches[i], patch_number(box, i), grid, box, faces);
   return faces;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 
 #include <Eigen/Core>
 #include <array>
@@ -41,7 +41,7 @@ struct Grid {
   int cell_at(const Eigen::Vector3d& place) const;
 };
 
-Grid make_grid(const Box& box, const std::array<int, 3>& counts);
+Grid make_grid(const Container& box, const std::array<int, 3>& counts);
 
 /// Where the box ends: one entry a cell face on it, by face and then by cell. Boundary number f < 6
 /// is face f, 6 + i is patch i.
@@ -52,7 +52,7 @@ struct GridFace {
 };
 
 /// Which face or patch each of them belongs to, by its middle (the rules of `Patch`).
-std::vector<GridFace> boundary_faces(const Grid& grid, const Box& box);
+std::vector<GridFace> boundary_faces(const Grid& grid, const Container& box);
 
 /// Middle of a cell face on the box, from the box's lower corner.
 Eigen::Vector3d middle_of(const Grid& grid, const GridFace& face);

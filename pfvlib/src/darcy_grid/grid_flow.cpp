@@ -18,7 +18,7 @@ double between(const Grid& grid, int axis, double one, double other) {
   return half_cell(grid, axis, one * other / (one + other));
 }
 
-double pressure_on(const Grid& grid, const GridFace& face, const Box& box, double time) {
+double pressure_on(const Grid& grid, const GridFace& face, const Container& box, double time) {
   const Boundary& boundary = boundary_of(box, face.boundary);
   if (!boundary.profile) return boundary.value;
   return boundary.profile(box.lower + middle_of(grid, face), time);
@@ -26,7 +26,7 @@ double pressure_on(const Grid& grid, const GridFace& face, const Box& box, doubl
 
 }  // namespace
 
-double reference_pressure(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+double reference_pressure(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                           double time) {
   double sum = 0.0;
   int count = 0;
@@ -38,13 +38,13 @@ double reference_pressure(const Grid& grid, const std::vector<GridFace>& faces, 
   return count > 0 ? sum / count : 0.0;
 }
 
-bool has_pressure(const std::vector<GridFace>& faces, const Box& box) {
+bool has_pressure(const std::vector<GridFace>& faces, const Container& box) {
   for (const GridFace& face : faces)
     if (boundary_of(box, face.boundary).imposes_pressure()) return true;
   return false;
 }
 
-GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                    double time, double reference) {
   const auto count = static_cast<Eigen::Index>(faces.size());
   GridDrive drive{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
@@ -67,7 +67,7 @@ GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const B
   return drive;
 }
 
-SymmetricMatrix assemble(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+SymmetricMatrix assemble(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                          const Eigen::VectorXd& mobility) {
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(grid.size());
   for (const GridFace& face : faces)
@@ -98,7 +98,7 @@ SymmetricMatrix assemble(const Grid& grid, const std::vector<GridFace>& faces, c
 }
 
 Eigen::VectorXd right_hand_side(const Grid& grid, const std::vector<GridFace>& faces,
-                                const Box& box, const Eigen::VectorXd& mobility, const GridDrive& drive,
+                                const Container& box, const Eigen::VectorXd& mobility, const GridDrive& drive,
                                 const Eigen::VectorXd& sources) {
   Eigen::VectorXd b = sources;
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -111,7 +111,7 @@ Eigen::VectorXd right_hand_side(const Grid& grid, const std::vector<GridFace>& f
   return b;
 }
 
-GridFields fields_of(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+GridFields fields_of(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                      const Eigen::VectorXd& mobility, const GridDrive& drive,
                      const Eigen::VectorXd& pressures) {
   GridFields fields;

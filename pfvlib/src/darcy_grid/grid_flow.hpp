@@ -21,23 +21,23 @@ struct GridDrive {
 /// Values of the boundaries at a time (s): a pressure by profile at the middle of the cell face, a
 /// flux spread by area. Throws InputError for a flux whose boundary has no cell face. Pressures are
 /// relative to `reference`.
-GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                    double time, double reference);
 
 /// Mean of the imposed pressures over their faces, Pa; 0 where there is none.
-double reference_pressure(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+double reference_pressure(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                           double time);
 
 /// True when some face has a pressure, so that the system is definite.
-bool has_pressure(const std::vector<GridFace>& faces, const Box& box);
+bool has_pressure(const std::vector<GridFace>& faces, const Container& box);
 
 /// The matrix of flow rates that unit pressures in the cells drive out of them, m³/(Pa s).
-SymmetricMatrix assemble(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+SymmetricMatrix assemble(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                          const Eigen::VectorXd& mobility);
 
 /// sources (m³/s into each cell) + what the boundaries drive in.
 Eigen::VectorXd right_hand_side(const Grid& grid, const std::vector<GridFace>& faces,
-                                const Box& box, const Eigen::VectorXd& mobility, const GridDrive& drive,
+                                const Container& box, const Eigen::VectorXd& mobility, const GridDrive& drive,
                                 const Eigen::VectorXd& sources);
 
 /// What follows from the pressures of the cells.
@@ -50,7 +50,7 @@ struct GridFields {
 /// The pressure of a face between two cells is the one at which the flow is the same on both sides,
 /// so that -mobility gradient is just the mean flow through a cell's opposite faces over their
 /// area, and the sum over cells of volume times gradient that of the boundary faces' pressures.
-GridFields fields_of(const Grid& grid, const std::vector<GridFace>& faces, const Box& box,
+GridFields fields_of(const Grid& grid, const std::vector<GridFace>& faces, const Container& box,
                      const Eigen::VectorXd& mobility, const GridDrive& drive,
                      const Eigen::VectorXd& pressures);
 

@@ -20,18 +20,19 @@ std::vector<BoundaryPart> boundary_parts(const DarcyData& flow) {
 }
 
 std::optional<double> permeability(const DarcyData& flow, const Totals& totals) {
-  const std::optional<int> axis = axis_of_flow(flow.last.box);
-  if (!axis || flow.last.moving) return {};
+  const std::optional<std::array<int, 2>> open = faces_of_flow(flow.last.box);
+  if (!open || flow.last.moving) return {};
   std::array<double, 2> mean{0.0, 0.0};
   const Grid& grid = flow.built->grid;
+  const std::vector<double> areas = face_areas(flow.last.box);
   for (std::size_t f = 0; f < flow.built->faces.size(); ++f) {
     const Face face = flow.built->faces[f].face;
-    if (axis_of(face) == *axis)
-      mean[is_upper(face)] += flow.last.fields.face_pressure[static_cast<Eigen::Index>(f)] *
-                              grid.face_area(*axis) / flow.last.box.area(face);
+    for (int i = 0; i < 2; ++i)
+      if (static_cast<int>(face) == (*open)[i])
+        mean[i] += flow.last.fields.face_pressure[static_cast<Eigen::Index>(f)] *
+                   grid.face_area(axis_of(face)) / areas[(*open)[i]];
   }
-  return permeability_of(flow.last.box, *axis, flow.fluid.viscosity, totals,
-                         std::abs(mean[0] - mean[1]));
+  return permeability_of(flow.last.box, *open, flow.fluid.viscosity, totals, mean);
 }
 
 }  // namespace

@@ -31,13 +31,13 @@ void Schemes::forget_factor() {
   implicit_.forget_factor();
 }
 
-Flow::Parts::Parts(Box in, Fluid of, const Options& by)
-    : box(std::move(in)), fluid(of), options(by), team(std::make_shared<Team>(by.threads)) {}
+Flow::Parts::Parts(Container in, Fluid of, const Options& by)
+    : container(std::move(in)), fluid(of), options(by), team(std::make_shared<Team>(by.threads)) {}
 
 BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, bool commit) {
   // explicit steps have ended when they are booked, so that the faces have swept already
   const double swept =
-      commit && coupling == Coupling::explicit_step ? swept_volume(box, dt) : 0.0;
+      commit && coupling == Coupling::explicit_step ? swept_volume(container, dt) : 0.0;
   const auto taken_up = [&](Replaced&& before) {
     carry_over(memory, before, keeper.network(), problem(), swept);
     schemes.forget_network();
@@ -55,7 +55,8 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
 }
 
 void Flow::Parts::begin_solution(const BuiltNetwork& built, double dt, bool commit) {
-  solution.box = box;
+  solution.container = container;
+  solution.geometry = geometry_of(container, built.network.origin);
   solution.time = commit ? memory.time + dt : memory.time;
   solution.dt = dt;
   solution.stages = 1;
@@ -63,7 +64,7 @@ void Flow::Parts::begin_solution(const BuiltNetwork& built, double dt, bool comm
   solution.unpaid = 0.0;
   solution.debt_rate = dt > 0.0 ? memory.volume_debt / dt : 0.0;
   solution.previous_pressures = memory.pressures;
-  solution.growth = growth_of(box, built.grains.spheres.edges,
+  solution.growth = growth_of(container, solution.geometry, built,
                               0.5 * schemes.of(coupling).direction() * dt);
 }
 
@@ -92,7 +93,7 @@ const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
 }
 
 double Flow::Parts::time_step_limit(const Eigen::VectorXd& masses,
-                                    const std::array<Piston, 6>& pistons) {
+                                    const std::vector<Piston>& pistons) {
   return schemes.limit.of(network(), problem(), keeper.packed(), masses, pistons, work);
 }
 
@@ -119,11 +120,11 @@ const Forces& Flow::Parts::solve_by_choice(const Packing& packing, double dt, co
   return forces;
 }
 
-Flow::Flow(Box box, Fluid fluid, Options options) {
-  check(box);
+Flow::Flow(Container container, Fluid fluid, Options options) {
+  check(container);
   check(fluid);
   check(options);
-  parts_ = std::make_unique<Parts>(std::move(box), fluid, options);
+  parts_ = std::make_unique<Parts>(std::move(container), fluid, options);
 }
 
 Flow::~Flow() = default;
@@ -147,10 +148,10 @@ int Flow::stages() const { return parts_->solution.stages; }
 
 void Flow::rebuild() { parts_->keeper.discard(true); }
 
-void Flow::set_box(const Box& box) {
-  check(box);
-  if (!same_kinds(parts_->box, box)) parts_->keeper.discard(true);
-  parts_->box = box;
+void Flow::set_container(const Container& container) {
+  check(container);
+  if (!same_kinds(parts_->container, container)) parts_->keeper.discard(true);
+  parts_->container = container;
 }
 
 void Flow::set_retriangulation(StrainMeasure measure, double strain) {

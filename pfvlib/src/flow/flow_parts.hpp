@@ -35,9 +35,9 @@ class Schemes {
 
 /// Who owns what behind Flow.
 struct Flow::Parts {
-  Parts(Box box, Fluid fluid, const Options& options);
+  Parts(Container container, Fluid fluid, const Options& options);
 
-  Box box;
+  Container container;
   Fluid fluid;
   Options options;
   std::shared_ptr<Team> team;  ///< of options.threads
@@ -53,13 +53,13 @@ struct Flow::Parts {
   Forces forces;
   std::optional<Balance> kept_balance;
 
-  Problem problem() const { return {box, fluid, options, team}; }
+  Problem problem() const { return {container, fluid, options, team}; }
   /// Solves, and books the step where it is committed.
   const Forces& solve(const Packing& packing, double dt, Coupling by,
                       const GrainDynamics* dynamics, bool commit);
   /// The same with the coupling that is cheapest and stable.
   const Forces& solve_by_choice(const Packing& packing, double dt, const Step& step);
-  double time_step_limit(const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons);
+  double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons);
 
   /// Throws InputError without a result.
   BuiltNetwork& network() const;

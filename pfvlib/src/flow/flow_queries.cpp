@@ -23,7 +23,7 @@ const Balance& Flow::Parts::balance() {
   return *kept_balance;
 }
 
-const Box& Flow::box() const { return parts_->box; }
+const Container& Flow::container() const { return parts_->container; }
 const Fluid& Flow::fluid() const { return parts_->fluid; }
 const Options& Flow::options() const { return parts_->options; }
 double Flow::time() const { return parts_->memory.time; }
@@ -35,13 +35,12 @@ const Forces& Flow::forces() const {
   return parts_->forces;
 }
 
-const std::array<FaceResult, 6>& Flow::faces() const { return parts_->balance().faces; }
+const std::vector<FaceResult>& Flow::faces() const { return parts_->balance().faces; }
 
-std::array<Eigen::Vector3d, 6> Flow::face_forces() const {
-  const std::array<FaceResult, 6> faces = pfv::face_forces(parts_->network(), parts_->solution);
-  std::array<Eigen::Vector3d, 6> total;
-  for (std::size_t f = 0; f < faces.size(); ++f)
-    total[f] = faces[f].force_pressure + faces[f].force_viscous;
+std::vector<Eigen::Vector3d> Flow::face_forces() const {
+  const std::vector<FaceResult> faces = pfv::face_forces(parts_->network(), parts_->solution);
+  std::vector<Eigen::Vector3d> total;
+  for (const FaceResult& face : faces) total.push_back(face.force_pressure + face.force_viscous);
   return total;
 }
 
@@ -63,7 +62,7 @@ double Flow::mean_pressure() const {
 }
 
 double Flow::time_step_limit(const Eigen::VectorXd& masses,
-                             const std::array<Piston, 6>& pistons) {
+                             const std::vector<Piston>& pistons) {
   return parts_->time_step_limit(masses, pistons);
 }
 

@@ -28,14 +28,12 @@ Json json_of(const std::optional<Value>& value) {
   return value ? json_of(*value) : Json(nullptr);
 }
 
-Json json_of(const std::array<FaceResult, 6>& faces) {
+Json json_of(const std::vector<FaceResult>& faces) {
   Json json;
-  for (const Face face : all_faces) {
-    const FaceResult& result = faces[static_cast<std::size_t>(face)];
-    json[name_of(face)] = {{"flux", json_of(result.flux)},
-                           {"force_pressure", json_of(result.force_pressure)},
-                           {"force_viscous", json_of(result.force_viscous)}};
-  }
+  for (const FaceResult& face : faces)
+    json[face.name] = {{"flux", json_of(face.flux)},
+                       {"force_pressure", json_of(face.force_pressure)},
+                       {"force_viscous", json_of(face.force_viscous)}};
   return json;
 }
 

@@ -19,7 +19,7 @@ std::uint64_t hilbert_number(std::array<std::uint32_t, 3> place);
 /// counts as at the border); those of one cube by `precedes`. Places that are near stand near in memory.
 std::vector<Vertex> along_curve(const Spheres& spheres);
 
-/// Spheres by their ids, the images of one sphere by their places; then walls, xlo ... zhi.
+/// Spheres by their ids, the images of one sphere by their places; then walls in their order.
 inline bool precedes(Vertex a, Vertex b, const Spheres& spheres) {
   if (is_wall(a) || is_wall(b)) return a > b;
   if (spheres.ids[a] != spheres.ids[b]) return spheres.ids[a] < spheres.ids[b];

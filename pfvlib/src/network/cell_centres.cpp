@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "network/cell_centres.hpp"
 
+#include "network/facets.hpp"
+
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include <algorithm>
@@ -28,36 +30,6 @@ struct Row {
   Number offset;
 };
 
-/// Rows normal . y = offset for y = P - (centre of the first sphere): radical planes with the other
-/// spheres, and wall planes. Spheres come first in a cell, so the base is always a sphere: with a
-/// wall's own equation no digits are lost.
-template <class Number>
-std::array<Row<Number>, 3> plane_rows(const std::array<Vertex, 4>& cell, const Spheres& spheres) {
-  std::array<Row<Number>, 3> rows;
-  const int base = cell[0];
-  const Number base_radius(spheres.radii[base]);
-  for (int i = 0; i < 3; ++i) {
-    const Vertex vertex = cell[i + 1];
-    Row<Number>& row = rows[i];
-    if (is_wall(vertex)) {
-      const int face = wall_number(vertex), axis = face / 2;
-      row.normal = {Number(0), Number(0), Number(0)};
-      row.normal[axis] = Number(1);
-      row.offset = Number(face % 2 ? spheres.edges[axis] : 0.0) - Number(spheres.centres(axis, base));
-      continue;
-    }
-    Number squared(0);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Number d = Number(spheres.centres(axis, vertex)) - Number(spheres.centres(axis, base));
-      row.normal[axis] = d;
-      squared += d * d;
-    }
-    const Number radius(spheres.radii[vertex]);
-    row.offset = (squared + (base_radius - radius) * (base_radius + radius)) / Number(2);
-  }
-  return rows;
-}
-
 template <class Number>
 std::array<Number, 3> cross(const std::array<Number, 3>& a, const std::array<Number, 3>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -66,6 +38,53 @@ std::array<Number, 3> cross(const std::array<Number, 3>& a, const std::array<Num
 template <class Number>
 Number dot(const std::array<Number, 3>& a, const std::array<Number, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+template <class Number>
+Row<Number> plane_row(const Surface& plane, const Eigen::Vector3d& base) {
+  Row<Number> row;
+  row.offset = Number(plane.offset);
+  for (int axis = 0; axis < 3; ++axis) {
+    row.normal[axis] = Number(plane.normal[axis]);
+    row.offset -= row.normal[axis] * Number(base[axis]);
+  }
+  return row;
+}
+
+/// The radical plane of two spheres.
+template <class Number>
+Row<Number> radical_row(const Spheres& spheres, int base, int other) {
+  Row<Number> row;
+  Number squared(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Number d = Number(spheres.centres(axis, other)) - Number(spheres.centres(axis, base));
+    row.normal[axis] = d;
+    squared += d * d;
+  }
+  const Number base_radius(spheres.radii[base]), radius(spheres.radii[other]);
+  row.offset = (squared + (base_radius - radius) * (base_radius + radius)) / Number(2);
+  return row;
+}
+
+/// Rows normal . y = offset for y = P - (centre of the first sphere): radical planes with the other
+/// spheres, and wall planes. Spheres come first in a cell, so the base is always a sphere: with a
+/// wall's own equation no digits are lost. In the place of a round wall stands the plane through the base
+/// square to the line in which the two others meet; that line is followed to the wall afterwards.
+template <class Number>
+std::array<Row<Number>, 3> plane_rows(const std::array<Vertex, 4>& cell, const Spheres& spheres) {
+  std::array<Row<Number>, 3> rows;
+  int round = -1;
+  for (int i = 0; i < 3; ++i) {
+    const Vertex vertex = cell[i + 1];
+    if (is_wall(vertex) && !spheres.wall(vertex).is_plane()) round = i;
+    else if (is_wall(vertex)) rows[i] = plane_row<Number>(spheres.wall(vertex).surface, spheres.centres.col(cell[0]));
+    else rows[i] = radical_row<Number>(spheres, cell[0], vertex);
+  }
+  if (round >= 0) {
+    rows[round].normal = cross(rows[(round + 1) % 3].normal, rows[(round + 2) % 3].normal);
+    rows[round].offset = Number(0);
+  }
+  return rows;
 }
 
 /// Cramer's rule. `quality` is the determinant for rows of length one.
@@ -90,19 +109,55 @@ bool solve(const std::array<Row<Number>, 3>& rows, Eigen::Vector3d& y, double& q
   return true;
 }
 
-/// Exact topology puts every dual vertex inside the box; what is left outside is rounding.
+/// Exact topology puts every dual vertex inside the walls; what is left outside is rounding, and what flats stand
+/// off a round wall.
+void hold_inside(const WallSurface& wall, bool on_it, Eigen::Vector3d& place) {
+  const double distance = wall.axis < 0 ? wall.surface.distance(place)
+                          : wall.upper  ? wall.surface.offset - place[wall.axis]
+                                        : wall.surface.offset + place[wall.axis];
+  if (on_it || distance < 0.0) place = put_on(wall, place);
+}
+
 Eigen::Vector3d inside(const Eigen::Vector3d& point, const std::array<Vertex, 4>& cell,
                        const Spheres& spheres) {
   Eigen::Vector3d moved = point;
-  for (int axis = 0; axis < 3; ++axis)
-    if (!spheres.periodic[axis])
-      moved[axis] = std::min(std::max(moved[axis], 0.0), spheres.edges[axis]);
-  for (const Vertex vertex : cell) {
-    if (!is_wall(vertex)) continue;
-    const int face = wall_number(vertex);
-    moved[face / 2] = face % 2 ? spheres.edges[face / 2] : 0.0;
-  }
+  for (const WallSurface& wall : spheres.walls)
+    if (wall.axis < 0 || !spheres.periodic[wall.axis]) hold_inside(wall, false, moved);
+  for (const Vertex vertex : cell)
+    if (is_wall(vertex)) hold_inside(spheres.wall(vertex), true, moved);
   return moved;
+}
+
+/// The round wall of a cell, or 0.
+Vertex round_wall(const std::array<Vertex, 4>& cell, const Spheres& spheres) {
+  for (const Vertex vertex : cell)
+    if (is_wall(vertex) && !spheres.wall(vertex).is_plane()) return vertex;
+  return 0;
+}
+
+/// From a point of the line in which a cell's other two planes meet, along it to its round wall: outwards, as
+/// the cell's orientation has it.
+Eigen::Vector3d along_to_wall(const Eigen::Vector3d& point, const std::array<Vertex, 4>& cell,
+                              Vertex round, const Spheres& spheres) {
+  const WallSurface& wall = spheres.wall(round);
+  const auto rows = plane_rows<double>(cell, spheres);
+  int own = 0;
+  for (int i = 0; i < 3; ++i)
+    if (cell[i + 1] == round) own = i;
+  Eigen::Vector3d way(rows[own].normal[0], rows[own].normal[1], rows[own].normal[2]);
+  Eigen::Vector3d outwards = spheres.outward(cell[0], round) + spheres.outward(cell[1], round);
+  if (!is_wall(cell[2])) {
+    const Eigen::Vector3d second = spheres.towards(cell[0], cell[1]);
+    outwards = second.cross(spheres.towards(cell[0], cell[2]));
+  }
+  if (way.dot(outwards) < 0.0) way = -way;
+  const Eigen::Vector2d from = wall.in_section(point);
+  const Eigen::Vector2d d(wall.first.dot(way), wall.second.dot(way));
+  const double a = d.squaredNorm(), b = from.dot(d);
+  const double c = (from.norm() - wall.surface.radius) * (from.norm() + wall.surface.radius);
+  if (!(a > 1e-24 * way.squaredNorm())) return point;  // it goes along the wall: `inside` does the rest
+  const double root = std::sqrt(std::max(b * b - a * c, 0.0));
+  return point + (root - b) / a * way;
 }
 
 }  // namespace
@@ -118,7 +173,10 @@ CellCentres cell_centres(const Triangulation& triangulation, const Spheres& sphe
     if (!solve(plane_rows<double>(cell, spheres), y, quality) || quality < sliver_determinant)
       if (!solve(plane_rows<Wide>(cell, spheres), y, quality)) unsolved.push_back(c);
     centres.flat[c] = quality < flat_determinant;
-    centres.places.col(c) = inside(spheres.centres.col(cell[0]) + y, cell, spheres);
+    Eigen::Vector3d place = spheres.centres.col(cell[0]) + y;
+    if (const Vertex round = round_wall(cell, spheres); round != 0)
+      place = along_to_wall(place, cell, round, spheres);
+    centres.places.col(c) = inside(place, cell, spheres);
   }
   // an exactly flat cell lies between cells with one dual vertex: it takes theirs
   for (const int c : unsolved)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "network/round_walls.hpp"
 #include "network/spheres.hpp"
 
 #include <array>
@@ -27,39 +28,91 @@ inline std::array<Vertex, 3> reversed(std::array<Vertex, 3> facet) {
   return facet;
 }
 
+/// Two plane walls as sphere k sees them: distances u and v, cosine c between the outward normals, and the squared
+/// sine. At right angles c is 0 and the sine 1, exactly.
+struct WallPair {
+  Eigen::Vector3d first, second, along;  ///< normals, and their cross product
+  double u, v, c, sine2;
+
+  WallPair(int k, Vertex one, Vertex other, const Spheres& spheres)
+      : first(spheres.outward(k, one)),
+        second(spheres.outward(k, other)),
+        along(first.cross(second)),
+        u(spheres.distance(k, wall_number(one))),
+        v(spheres.distance(k, wall_number(other))),
+        c(first.dot(second)),
+        sine2(along.squaredNorm()) {}
+  /// From the foot on the first wall to the edge, along that wall, times the sine, m; negative where the foot lies
+  /// beyond the edge.
+  double leg() const { return v - u * c; }
+  /// From the sphere to the point of the edge that its plane across the edge meets.
+  Eigen::Vector3d to_edge() const { return u * first + leg() / sine2 * (second - c * first); }
+};
+
 /// Area vector (m²) of the facet's polygon: a triangle of centres; with one wall the trapezoid
-/// between two centres and their projections; with two walls the rectangle between a centre and the
-/// edge of the box. Its length is the area, its direction the facet's normal.
+/// between two centres and their feet on it; with two walls the kite between a centre, its feet and the edge. Its
+/// length is the area; its direction is the facet's normal or, where a foot lies so far beyond the edge that more
+/// of the kite is turned over than not, the opposite one.
 inline Eigen::Vector3d area_vector(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
   const int a = facet[0];
+  if (is_wall(facet[1])) {
+    const WallPair walls(a, facet[1], facet[2], spheres);
+    const double twice = 2.0 * walls.v * walls.u - walls.c * (walls.u * walls.u + walls.v * walls.v);
+    return twice / (2.0 * walls.sine2) * walls.along;
+  }
+  if (is_swept(facet, spheres)) return swept_area(facet, spheres);
   const Eigen::Vector3d second = spheres.towards(a, facet[1]);
   const Eigen::Vector3d normal = second.cross(spheres.towards(a, facet[2]));
   if (!is_wall(facet[2])) return 0.5 * normal;
   const double height = spheres.distance(a, wall_number(facet[2]));
-  if (!is_wall(facet[1]))
-    return 0.5 * (height + spheres.distance(facet[1], wall_number(facet[2]))) * normal;
-  return height * spheres.distance(a, wall_number(facet[1])) * normal;
+  return 0.5 * (height + spheres.distance(facet[1], wall_number(facet[2]))) * normal;
 }
 
-/// Corners of the facet's polygon, counterclockwise about its normal.
+/// The point of a wall nearest to a sphere's centre.
+inline Eigen::Vector3d foot_on(Vertex wall, int k, const Spheres& spheres) {
+  return spheres.centres.col(k) + spheres.distance(k, wall_number(wall)) * spheres.outward(k, wall);
+}
+
+/// The point of a wall nearest to a place; exact for a plane normal to an axis.
+inline Eigen::Vector3d put_on(const WallSurface& wall, Eigen::Vector3d place) {
+  if (wall.axis >= 0) {
+    place[wall.axis] = wall.upper ? wall.surface.offset : -wall.surface.offset;
+    return place;
+  }
+  if (wall.is_plane()) return place + wall.surface.distance(place) * wall.surface.normal;
+  const Eigen::Vector2d in = wall.in_section(place);
+  const double rho = in.norm();
+  if (!(rho > 0.0)) return place + wall.surface.radius * wall.first;
+  return place + (wall.surface.radius - rho) / rho * (in.x() * wall.first + in.y() * wall.second);
+}
+
+/// The point where three plane walls meet.
+inline Eigen::Vector3d corner_of_walls(Vertex first, Vertex second, Vertex third, const Spheres& spheres) {
+  const Surface &a = spheres.wall(first).surface, &b = spheres.wall(second).surface,
+                &c = spheres.wall(third).surface;
+  return (a.offset * b.normal.cross(c.normal) + b.offset * c.normal.cross(a.normal) +
+          c.offset * a.normal.cross(b.normal)) /
+         a.normal.dot(b.normal.cross(c.normal));
+}
+
+/// Corners of the facet's polygon, counterclockwise about its normal; of a swept facet those of the surface.
 struct FacetCorners {
   std::array<Eigen::Vector3d, 4> at;  ///< m
   int count = 3;
 };
 inline FacetCorners corners_of(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
-  const auto on_wall = [&](const Eigen::Vector3d& from, int k, Vertex wall) -> Eigen::Vector3d {
-    return from + spheres.distance(k, wall_number(wall)) * spheres.towards(k, wall);
-  };
   const Eigen::Vector3d a = spheres.centres.col(facet[0]);
   if (!is_wall(facet[2]))
     return {{a, spheres.centres.col(facet[1]), spheres.centres.col(facet[2]), a}, 3};
-  const Eigen::Vector3d last = on_wall(a, facet[0], facet[2]);
+  const Eigen::Vector3d last = foot_on(facet[2], facet[0], spheres);
   if (is_wall(facet[1])) {
-    const Eigen::Vector3d second = on_wall(a, facet[0], facet[1]);
-    return {{a, second, second + last - a, last}, 4};
+    const Eigen::Vector3d second = foot_on(facet[1], facet[0], spheres);
+    const WallPair walls(facet[0], facet[1], facet[2], spheres);
+    const Eigen::Vector3d edge = walls.c == 0.0 ? Eigen::Vector3d(second + last - a) : Eigen::Vector3d(a + walls.to_edge());
+    return {{a, second, edge, last}, 4};
   }
   const Eigen::Vector3d b = spheres.centres.col(facet[1]);
-  return {{a, b, on_wall(b, facet[1], facet[2]), last}, 4};
+  return {{a, b, foot_on(facet[2], facet[1], spheres), last}, 4};
 }
 
 /// Integral of x cross n over a polygon, m³: the moment about the corner of the box of a unit pressure on it.
@@ -74,10 +127,12 @@ inline Eigen::Vector3d moment_vector(const FacetCorners& polygon) {
   return sum;
 }
 
-/// Unit normal of the facet; zero for a facet without area.
+/// Unit normal of the facet, of a swept one its mean; zero for a facet without area.
 inline Eigen::Vector3d unit_normal(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
   const Eigen::Vector3d normal =
-      spheres.towards(facet[0], facet[1]).cross(spheres.towards(facet[0], facet[2]));
+      is_swept(facet, spheres)
+          ? swept_area(facet, spheres)
+          : Eigen::Vector3d(spheres.towards(facet[0], facet[1]).cross(spheres.towards(facet[0], facet[2])));
   const double length = normal.norm();
   return length > 0.0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
 }

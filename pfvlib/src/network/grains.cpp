@@ -52,8 +52,8 @@ void check_values(const Packing& packing) {
 
 /// Of a sphere some thousand boxes wide only its cap is in the box, as a difference of volumes whose
 /// last digit is already as large as the box's seventh.
-void refuse_giants(const Packing& packing, const Box& box) {
-  const double largest = 1e3 * std::cbrt(box.volume());
+void refuse_giants(const Packing& packing, double volume) {
+  const double largest = 1e3 * std::cbrt(volume);
   for (Eigen::Index k = 0; k < packing.size(); ++k)
     if (packing.radii[k] > largest)
       throw InputError("sphere " + std::to_string(packing.ids[k]) + ": its radius " +
@@ -82,31 +82,69 @@ std::string sphere_list(const Packing::Ids& ids, const std::vector<int>& columns
   return text;
 }
 
-bool is_inside(const Packing& packing, Eigen::Index column, const Box& box) {
+bool is_inside(const Packing& packing, Eigen::Index column, const Container& container) {
   for (int axis = 0; axis < 3; ++axis) {
     const double x = packing.positions(axis, column);
-    if (!box.periodic[axis] && !(x > box.lower[axis] && x < box.upper[axis])) return false;
+    if (!container.periodic[axis] && !(x > container.lower[axis] && x < container.upper[axis])) return false;
   }
+  if (container.is_box) return true;
+  for (const ContainerFace& face : container.faces)
+    if (!(face.surface.distance(packing.positions.col(column)) > 0.0)) return false;
   return true;
 }
 
-ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains outside) {
+std::vector<WallSurface> walls_of(const Container& container, const Eigen::Vector3d& origin) {
+  std::vector<WallSurface> walls;
+  for (const ContainerFace& face : container.faces) {
+    WallSurface wall{face.surface};
+    wall.surface.offset -= wall.surface.normal.dot(origin);
+    wall.surface.point -= origin;
+    wall.first = wall.surface.axis.unitOrthogonal();
+    wall.second = wall.surface.axis.cross(wall.first);
+    for (int axis = 0; axis < 3; ++axis)
+      if (wall.is_plane() && std::abs(wall.surface.normal[axis]) == 1.0) {
+        wall.axis = axis;
+        wall.upper = wall.surface.normal[axis] > 0.0;
+      }
+    walls.push_back(wall);
+  }
+  return walls;
+}
+
+namespace {
+
+InputError outside_of(const Container& container, const Packing& packing, Eigen::Index k) {
+  const std::string text =
+      "sphere " + std::to_string(packing.ids[k]) + ": its centre " + place(packing.positions.col(k));
+  const Culprits culprit{{packing.ids[k]}, {}};
+  if (container.is_box)
+    return InputError(text + " is not inside the box from " + place(container.lower) + " to " +
+                          place(container.upper) + "; enlarge the box or remove the sphere",
+                      culprit);
+  for (const ContainerFace& face : container.faces)
+    if (!(face.surface.distance(packing.positions.col(k)) > 0.0))
+      return InputError(text + " is not inside the container: it stands beyond its face " + face.name +
+                            "; move that face or remove the sphere",
+                        culprit);
+  return InputError(text + " is not inside the container; remove the sphere", culprit);
+}
+
+}  // namespace
+
+ActiveGrains select_grains(const Packing& packing, const Container& container, OutsideGrains outside) {
   check_shapes(packing);
   check_values(packing);
-  refuse_giants(packing, box);
+  const double volume = volume_of(container);
+  refuse_giants(packing, volume);
   refuse_repeated_ids(packing);
   if (packing.size() == 0 && outside == OutsideGrains::refuse)
     throw InputError("the packing has no spheres; give at least one");
   ActiveGrains grains;
   for (Eigen::Index k = 0; k < packing.size(); ++k) {
-    if (is_inside(packing, k, box)) {
+    if (is_inside(packing, k, container)) {
       grains.columns.push_back(static_cast<int>(k));
     } else if (outside == OutsideGrains::refuse) {
-      throw InputError("sphere " + std::to_string(packing.ids[k]) + ": its centre " +
-                       place(packing.positions.col(k)) + " is not inside the box from " +
-                       place(box.lower) + " to " + place(box.upper) +
-                           "; enlarge the box or remove the sphere",
-                       {{packing.ids[k]}, {}});
+      throw outside_of(container, packing, k);
     }
   }
   const auto n = static_cast<Eigen::Index>(grains.columns.size());
@@ -114,14 +152,16 @@ ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains
   spheres.ids.resize(n);
   spheres.centres.resize(3, n);
   spheres.radii.resize(n);
-  spheres.edges = box.upper - box.lower;
-  spheres.periodic = box.periodic;
+  spheres.edges = container.upper - container.lower;
+  spheres.walls = walls_of(container, container.lower);
+  spheres.volume = volume;
+  spheres.periodic = container.periodic;
   for (Eigen::Index i = 0; i < n; ++i) {
     const int k = grains.columns[i];
     spheres.ids[i] = packing.ids[k];
-    spheres.centres.col(i) = packing.positions.col(k) - box.lower;
+    spheres.centres.col(i) = packing.positions.col(k) - container.lower;
     for (int axis = 0; axis < 3; ++axis)  // back into the periodic cell
-      if (box.periodic[axis])
+      if (container.periodic[axis])
         spheres.centres(axis, i) -=
             spheres.edges[axis] * std::floor(spheres.centres(axis, i) / spheres.edges[axis]);
     spheres.radii[i] = packing.radii[k];
@@ -145,9 +185,9 @@ double displaced_volume(const Packing& packing, Eigen::Index column) {
   return 4.0 / 3.0 * pi * r * r * r;
 }
 
-bool at_rest(const Packing& packing, const Box& box, bool spins) {
-  for (const FaceCondition& face : box.faces)
-    if (face.velocity != 0.0 || face.spin != 0.0 || !face.sliding.isZero(0.0)) return false;
+bool at_rest(const Packing& packing, const Container& container, bool spins) {
+  for (const ContainerFace& face : container.faces)
+    if (!face.velocity.isZero(0.0) || !face.angular_velocity.isZero(0.0)) return false;
   return (packing.velocities.array() == 0.0).all() &&
          (!spins || (packing.angular_velocities.array() == 0.0).all());
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "network/spheres.hpp"
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/options.hpp"
 #include "pfv/packing.hpp"
 
@@ -10,19 +10,19 @@
 
 namespace pfv {
 
-/// The grains that take part in the flow: those with their centre inside the box.
+/// The grains that take part in the flow: those with their centre inside the container.
 struct ActiveGrains {
   std::vector<int> columns;  ///< of the packing, ascending
-  Spheres spheres;           ///< the same grains, in coordinates from the box's lower corner
+  Spheres spheres;           ///< the same grains, in coordinates from the lower corner of the box around it
 };
 
 /// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0 or a
 /// thousand times the box, repeated ids, and (OutsideGrains::refuse) a centre that is not inside the
-/// box or no grain at all.
-ActiveGrains select_grains(const Packing& packing, const Box& box, OutsideGrains outside);
+/// container or no grain at all.
+ActiveGrains select_grains(const Packing& packing, const Container& container, OutsideGrains outside);
 
 /// Cheap tests of each step.
-bool is_inside(const Packing& packing, Eigen::Index column, const Box& box);
+bool is_inside(const Packing& packing, Eigen::Index column, const Container& container);
 /// Moment of inertia of a solid sphere, kg m².
 inline double inertia_of(double mass, double radius) { return 0.4 * mass * radius * radius; }
 /// 3 x active spheres; zeros where the packing has none.
@@ -30,6 +30,6 @@ void gather_velocities(const Packing& packing, const std::vector<int>& columns,
                        Eigen::Matrix3Xd& velocities);
 /// m³: what the lift of a sphere counts.
 double displaced_volume(const Packing& packing, Eigen::Index column);
-bool at_rest(const Packing& packing, const Box& box, bool spins = false);
+bool at_rest(const Packing& packing, const Container& container, bool spins = false);
 
 }  // namespace pfv

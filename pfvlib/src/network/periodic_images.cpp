@@ -226,6 +226,8 @@ Images replicate(const Spheres& spheres, double margin) {
         }
   const auto n = static_cast<Eigen::Index>(centres.size());
   images.spheres.edges = spheres.edges;
+  images.spheres.walls = spheres.walls;
+  images.spheres.volume = spheres.volume;
   images.spheres.periodic = spheres.periodic;
   images.spheres.ids.resize(n);
   images.spheres.centres.resize(3, n);

@@ -13,8 +13,8 @@ struct InFace {
   Eigen::Vector2d lower, upper, place;
 };
 
-InFace in_face(const Patch& patch, const PoreNetwork& network, int pore) {
-  const int axis = axis_of(patch.face), first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
+InFace in_face(const ContainerPatch& patch, int axis, const PoreNetwork& network, int pore) {
+  const int first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
   const Eigen::Vector3d place = network.origin + network.pore_centres.col(pore);
   return {{patch.rectangle[0], patch.rectangle[2]},
           {patch.rectangle[1], patch.rectangle[3]},
@@ -29,16 +29,18 @@ bool within(const InFace& p) {
 }
 
 void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
-                   const Box& box, int number) {
-  const Patch& patch = box.patches[number];
+                   const Container& container, int number) {
+  const ContainerPatch& patch = container.patches[number];
+  int axis = 0;
+  container.faces[patch.face].surface.normal.cwiseAbs().maxCoeff(&axis);
   PoreBoundaries::Contact* nearest = nullptr;
   double nearest_distance = std::numeric_limits<double>::infinity();
   bool any = false;
   for (PoreBoundaries::Contact& contact : contacts) {
-    if (contact.face != static_cast<int>(patch.face)) continue;
-    const InFace place = in_face(patch, network, contact.pore);
+    if (contact.face != patch.face) continue;
+    const InFace place = in_face(patch, axis, network, contact.pore);
     if (within(place)) {
-      contact.boundary = patch_number(number);
+      contact.boundary = patch_number(container, number);
       any = true;
     }
     const double distance = (place.place - 0.5 * (place.lower + place.upper)).norm();
@@ -47,14 +49,14 @@ void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNet
       nearest = &contact;
     }
   }
-  if (!any && nearest) nearest->boundary = patch_number(number);
+  if (!any && nearest) nearest->boundary = patch_number(container, number);
 }
 
 /// The region of each pore, or -1.
-std::vector<int> regions_of_pores(const PoreNetwork& network, const Box& box) {
+std::vector<int> regions_of_pores(const PoreNetwork& network, const Container& container) {
   std::vector<int> region_of(network.pores(), -1);
-  for (std::size_t number = 0; number < box.regions.size(); ++number) {
-    const Region& region = box.regions[number];
+  for (std::size_t number = 0; number < container.regions.size(); ++number) {
+    const Region& region = container.regions[number];
     const Eigen::Array3d slack = 1e-9 * (region.upper - region.lower).array();
     const Eigen::Vector3d middle = 0.5 * (region.lower + region.upper);
     int nearest = -1;
@@ -79,15 +81,15 @@ std::vector<int> regions_of_pores(const PoreNetwork& network, const Box& box) {
 }
 
 void give_to_regions(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
-                     const Box& box) {
-  if (box.regions.empty()) return;
-  const std::vector<int> region_of = regions_of_pores(network, box);
+                     const Container& container) {
+  if (container.regions.empty()) return;
+  const std::vector<int> region_of = regions_of_pores(network, container);
   for (PoreBoundaries::Contact& contact : contacts)
     if (region_of[contact.pore] >= 0)
-      contact.boundary = first_region(box) + region_of[contact.pore];
+      contact.boundary = first_region(container) + region_of[contact.pore];
   for (int pore = 0; pore < network.pores(); ++pore)
     if (region_of[pore] >= 0)
-      contacts.push_back({pore, PoreBoundaries::inside, first_region(box) + region_of[pore]});
+      contacts.push_back({pore, PoreBoundaries::inside, first_region(container) + region_of[pore]});
   std::sort(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
     return std::pair(a.pore, a.face) < std::pair(b.pore, b.face);
   });
@@ -95,28 +97,37 @@ void give_to_regions(std::vector<PoreBoundaries::Contact>& contacts, const PoreN
 
 }  // namespace
 
-std::string boundary_name(const Box& box, int number) {
-  if (number < face_count) return std::string("face ") + name_of(static_cast<Face>(number));
-  if (number >= first_region(box))
-    return "region " + std::to_string(number - first_region(box) + 1);
-  return "patch " + std::to_string(number - face_count + 1) + " on face " +
-         name_of(box.patches[number - face_count].face);
+std::string boundary_name(const Container& container, int number) {
+  const int faces = container.face_count();
+  if (number < faces) return "face " + container.faces[number].name;
+  if (number >= first_region(container))
+    return "region " + std::to_string(number - first_region(container) + 1);
+  return "patch " + std::to_string(number - faces + 1) + " on face " +
+         container.faces[container.patches[number - faces].face].name;
 }
 
-PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Box& box) {
+int PoreBoundaries::contact_of(int pore, int face) const {
+  const auto found = std::lower_bound(contacts.begin(), contacts.end(), std::pair(pore, face),
+                                      [](const Contact& contact, const std::pair<int, int>& wanted) {
+                                        return std::pair(contact.pore, contact.face) < wanted;
+                                      });
+  return static_cast<int>(found - contacts.begin());
+}
+
+PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Container& container) {
   PoreBoundaries result;
   for (int pore = 0; pore < network.pores(); ++pore)
-    for (int face = 0; face < face_count; ++face)
-      if (network.pore_faces[pore] >> face & 1) result.contacts.push_back({pore, face, face});
-  for (std::size_t i = 0; i < box.patches.size(); ++i)
-    give_to_patch(result.contacts, network, box, static_cast<int>(i));
+    for (int face = 0; face < container.face_count(); ++face)
+      if (network.pore_faces[pore] & face_bit(face)) result.contacts.push_back({pore, face, face});
+  for (std::size_t i = 0; i < container.patches.size(); ++i)
+    give_to_patch(result.contacts, network, container, static_cast<int>(i));
 
   result.no_slip_faces.assign(network.pores(), 0);
   for (const auto& contact : result.contacts)
-    if (box.faces[contact.face].wall == Wall::no_slip &&
-        !boundary_of(box, contact.boundary).is_open())
-      result.no_slip_faces[contact.pore] |= static_cast<std::uint8_t>(1u << contact.face);
-  give_to_regions(result.contacts, network, box);
+    if (container.faces[contact.face].wall == Wall::no_slip &&
+        !boundary_of(container, contact.boundary).is_open())
+      result.no_slip_faces[contact.pore] |= face_bit(contact.face);
+  give_to_regions(result.contacts, network, container);
   return result;
 }
 

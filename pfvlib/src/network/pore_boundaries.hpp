@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/network.hpp"
 
 #include <cstdint>
@@ -9,31 +9,37 @@
 
 namespace pfv {
 
-/// Where pores meet the box and its regions. Boundary number f < face_count is face f, then come the patches,
-/// then the regions.
+/// Where pores meet the container and its regions. Boundary number f < face_count() is face f, then come the
+/// patches, then the regions.
 struct PoreBoundaries {
   static constexpr int inside = -1;  ///< in the place of a face: a pore's part in its region
   struct Contact {
     int pore, face, boundary;
   };
   std::vector<Contact> contacts;           ///< sorted by pore, then by face; `inside` comes first
-  std::vector<std::uint8_t> no_slip_faces;  ///< one entry a pore; bit f: it rubs on face f
+  std::vector<FaceSet> no_slip_faces;  ///< one entry a pore; bit f: it rubs on face f
+
+  /// Number of a pore's contact with a face, which must exist.
+  int contact_of(int pore, int face) const;
 };
 
 /// Which face or patch each boundary pore belongs to; geometry only, so values may change later.
-PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Box& box);
+PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Container& container);
 
-inline int patch_number(std::size_t patch) { return face_count + static_cast<int>(patch); }
-inline int first_region(const Box& box) { return patch_number(box.patches.size()); }
-inline int boundary_count(const Box& box) {
-  return first_region(box) + static_cast<int>(box.regions.size());
+inline int patch_number(const Container& container, std::size_t patch) {
+  return container.face_count() + static_cast<int>(patch);
 }
-inline const Boundary& boundary_of(const Box& box, int number) {
-  if (number < face_count) return box.faces[number].boundary;
-  if (number < first_region(box)) return box.patches[number - face_count].boundary;
-  return box.regions[number - first_region(box)].boundary;
+inline int first_region(const Container& container) { return patch_number(container, container.patches.size()); }
+inline int boundary_count(const Container& container) {
+  return first_region(container) + static_cast<int>(container.regions.size());
+}
+inline const Boundary& boundary_of(const Container& container, int number) {
+  const int faces = container.face_count(), regions = first_region(container);
+  if (number < faces) return container.faces[number].boundary;
+  if (number < regions) return container.patches[number - faces].boundary;
+  return container.regions[number - regions].boundary;
 }
 /// "face zlo", "patch 2 on face zhi", "region 1": for messages.
-std::string boundary_name(const Box& box, int number);
+std::string boundary_name(const Container& container, int number);
 
 }  // namespace pfv

@@ -102,7 +102,7 @@ void join_cells_into_pores(PoreNetwork& network, const std::vector<Facet>& facet
     for (const Vertex vertex : network.cell_vertices[c])
       if (is_wall(vertex))
         network.pore_faces[network.cell_pore[c]] |=
-            static_cast<std::uint8_t>(1u << wall_number(vertex));
+            face_bit(wall_number(vertex));
 }
 
 /// Turns a facet round: cell 0 is the one of the pore with the smaller number.
@@ -211,7 +211,7 @@ void refuse_endless_images(const Spheres& spheres, double margin) {
 }  // namespace
 
 PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin) {
-  const double spacing = std::cbrt(spheres.edges.prod() / std::max(1, spheres.size()));
+  const double spacing = std::cbrt(spheres.volume / std::max(1, spheres.size()));
   PoreSpace space;
   const auto& periodic = spheres.periodic;
   if (std::find(periodic.begin(), periodic.end(), true) == periodic.end() || spheres.size() == 0) {

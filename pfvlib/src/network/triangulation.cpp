@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "network/triangulation.hpp"
 
+#include "geometry/pi.hpp"
 #include "network/canonical_order.hpp"
 #include "pfv/error.hpp"
 
@@ -33,7 +34,46 @@ using Site = Kernel::Weighted_point_3;
 /// 1 / (8 R), rounding by some 1e-16 R; near 2^25 both are a few 1e-9 of the box.
 constexpr double wall_radius_in_box_lengths = 33554432.0;
 
-Site wall_site(const Spheres& spheres, int face) {
+/// A plane that stands for a wall or, tangent to it, for a part of a round one.
+struct Flat {
+  Surface plane;
+  int axis;  ///< that the plane is normal to, or -1
+  Vertex wall;
+};
+
+/// Tangent planes of a cylinder: so many that between two of them it stands back from their edge by no more
+/// than a hundredth of the mean sphere's radius, within bounds.
+int flats_of_cylinder(const Spheres& spheres, double radius) {
+  constexpr double depth = 0.01;
+  constexpr int fewest = 32, most = 256;
+  if (spheres.size() == 0) return fewest;
+  const double gap = depth * spheres.radii.mean() / radius;
+  const int flats = static_cast<int>(std::ceil(pi / std::sqrt(2.0 * gap)));
+  return std::min(std::max(flats, fewest), most);
+}
+
+std::vector<Flat> flats_of(const Spheres& spheres) {
+  std::vector<Flat> flats;
+  for (int w = 0; w < spheres.wall_count(); ++w) {
+    const WallSurface& wall = spheres.walls[w];
+    if (wall.axis >= 0 && spheres.periodic[wall.axis]) continue;
+    if (wall.is_plane()) {
+      flats.push_back({wall.surface, wall.axis, wall_vertex(w)});
+      continue;
+    }
+    const int count = flats_of_cylinder(spheres, wall.surface.radius);
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2.0 * pi * (i + 0.5) / count;
+      const Eigen::Vector3d normal = std::cos(angle) * wall.first + std::sin(angle) * wall.second;
+      flats.push_back({Surface::plane(normal, wall.surface.point + wall.surface.radius * normal), -1,
+                       wall_vertex(w)});
+    }
+  }
+  return flats;
+}
+
+/// The sphere that stands for a plane touches it near the middle of the container.
+Site flat_site(const Spheres& spheres, const Flat& flat) {
   double extent = spheres.edges.maxCoeff();
   if (spheres.size() > 0)  // images of a periodic box stand outside it
     extent = std::max(extent, (spheres.centres.rowwise().maxCoeff() -
@@ -42,8 +82,12 @@ Site wall_site(const Spheres& spheres, int face) {
   // a power of two, so that R and R² are exact
   const double radius = std::exp2(std::ceil(std::log2(wall_radius_in_box_lengths * extent)));
   Eigen::Vector3d centre = 0.5 * spheres.edges;
-  const int axis = face / 2;
-  centre[axis] = face % 2 ? spheres.edges[axis] + radius : -radius;
+  if (flat.axis >= 0) {
+    const double side = flat.plane.normal[flat.axis];
+    centre[flat.axis] = side * (flat.plane.offset + radius);
+  } else {
+    centre += (flat.plane.distance(centre) + radius) * flat.plane.normal;
+  }
   return Site(Kernel::Point_3(centre[0], centre[1], centre[2]), radius * radius);
 }
 
@@ -57,12 +101,11 @@ Site sphere_site(const Spheres& spheres, int k) {
 /// on: each begins its search next to the one before, in a triangulation that is never far from even.
 constexpr int refinement = 8, coarsest = 64;
 
-/// `info` of a vertex is its sphere's place in `order`, or a wall.
-Regular build(const Spheres& spheres, const std::vector<Vertex>& order) {
+/// `info` of a vertex is its sphere's place in `order`, or the number of its flat, as that of a wall.
+Regular build(const Spheres& spheres, const std::vector<Vertex>& order, const std::vector<Flat>& flats) {
   Regular regular;
-  for (int face = 0; face < face_count; ++face)
-    if (!spheres.periodic[face / 2])
-      regular.insert(wall_site(spheres, face))->info() = wall_vertex(face);
+  for (std::size_t flat = 0; flat < flats.size(); ++flat)
+    regular.insert(flat_site(spheres, flats[flat]))->info() = wall_vertex(static_cast<int>(flat));
   const int count = spheres.size();
   Regular::Cell_handle near{};
   const auto insert = [&](int place) {
@@ -85,18 +128,30 @@ std::array<Vertex, 4> vertices_of(Regular::Cell_handle cell) {
           cell->vertex(3)->info()};
 }
 
-/// A cell of the box has a sphere, and no two opposite walls.
-bool in_box(const std::array<Vertex, 4>& vertices) {
+/// What becomes of a cell.
+enum class Fate {
+  kept,      ///< it has a sphere, and its walls meet
+  between,   ///< it lies between two flats of one round wall, which are one wall: nothing is there
+  outside    ///< of the container
+};
+
+bool are_parallel(const Flat& a, const Flat& b) { return a.plane.normal == -b.plane.normal; }
+
+Fate fate_of(const std::array<Vertex, 4>& vertices, const std::vector<Flat>& flats) {
   int walls = 0;
-  unsigned axes = 0, repeated = 0;
-  for (const Vertex v : vertices) {
-    if (!is_wall(v)) continue;
+  bool twice = false;
+  for (int i = 0; i < 4; ++i) {
+    if (!is_wall(vertices[i])) continue;
     ++walls;
-    const unsigned axis = 1u << (wall_number(v) / 2);
-    repeated |= axes & axis;
-    axes |= axis;
+    for (int j = 0; j < i; ++j) {
+      if (!is_wall(vertices[j])) continue;
+      const Flat &a = flats[wall_number(vertices[i])], &b = flats[wall_number(vertices[j])];
+      if (a.wall == b.wall) twice = true;
+      else if (are_parallel(a, b)) return Fate::outside;
+    }
   }
-  return walls < 4 && repeated == 0;
+  if (walls == 4) return Fate::outside;
+  return twice ? Fate::between : Fate::kept;
 }
 
 std::vector<int> hidden_spheres(const Regular& regular, const std::vector<Vertex>& order,
@@ -130,17 +185,22 @@ void refuse_equal_centres(const Spheres& spheres) {
                        {{spheres.ids[order[i - 1]], spheres.ids[order[i]]}, {}});
 }
 
-/// The cells of the box in order; the `info` of each is its number, of the others -1.
-std::vector<Regular::Cell_handle> number_cells(const Regular& regular, int spheres) {
+constexpr int outside = -1, between = -2;  // in the place of a cell's number
+
+/// The cells of the container in order; the `info` of each is its number, of the others why they are none.
+std::vector<Regular::Cell_handle> number_cells(const Regular& regular, int spheres,
+                                               const std::vector<Flat>& flats) {
   std::vector<Regular::Cell_handle> found, cells;
   std::vector<std::array<Vertex, 4>> vertices;
   found.reserve(regular.number_of_finite_cells());
   vertices.reserve(regular.number_of_finite_cells());
   for (auto cell = regular.all_cells_begin(); cell != regular.all_cells_end(); ++cell) {
-    cell->info() = -1;
+    cell->info() = outside;
     if (regular.is_infinite(cell)) continue;
     const auto own = vertices_of(cell);
-    if (!in_box(own)) continue;
+    const Fate fate = fate_of(own, flats);
+    if (fate == Fate::between) cell->info() = between;
+    if (fate != Fate::kept) continue;
     found.push_back(cell);
     vertices.push_back(own);
   }
@@ -152,29 +212,76 @@ std::vector<Regular::Cell_handle> number_cells(const Regular& regular, int spher
   return cells;
 }
 
+/// The two flats of one round wall in a cell between them: `known` is one, the other is returned.
+Vertex other_flat(Regular::Cell_handle cell, Vertex known, const std::vector<Flat>& flats) {
+  for (const Vertex v : vertices_of(cell))
+    if (v != known && is_wall(v) && flats[wall_number(v)].wall == flats[wall_number(known)].wall) return v;
+  return known;
+}
+
+/// The number of the cell beyond facet i, with the round walls as one: cells between two flats of a wall have
+/// no thickness, so the way goes on through them, along the wall.
+int neighbour_of(Regular::Cell_handle cell, int i, const std::vector<Flat>& flats) {
+  Regular::Cell_handle next = cell->neighbor(i);
+  if (next->info() != between) return next->info();
+  Vertex known = 0;
+  for (int k = 0; k < 4; ++k) {
+    const Vertex v = cell->vertex(k)->info();
+    if (k != i && is_wall(v) && other_flat(next, v, flats) != v) known = v;
+  }
+  while (next->info() == between && known < 0) {
+    const Vertex other = other_flat(next, known, flats);
+    int exit = -1;
+    for (int k = 0; k < 4; ++k)
+      if (next->vertex(k)->info() == known) exit = k;
+    if (exit < 0 || other == known) return outside;
+    next = next->neighbor(exit);
+    known = other;
+  }
+  return std::max(next->info(), outside);
+}
+
+/// Spheres around which all cells lie between flats of a round wall: they see nothing but that wall.
+void refuse_lone_spheres(const Triangulation& result, const Spheres& spheres) {
+  std::vector<char> seen(spheres.size(), 0);
+  for (const auto& cell : result.vertices)
+    for (const Vertex v : cell)
+      if (!is_wall(v)) seen[v] = 1;
+  for (const int k : result.hidden) seen[k] = 1;
+  std::vector<int> alone;
+  for (int k = 0; k < spheres.size(); ++k)
+    if (!seen[k]) alone.push_back(k);
+  if (alone.empty()) return;
+  sort_by_ids(alone, spheres);
+  throw InputError(sphere_list(spheres.ids, alone) +
+                       ": too few others stand around it within a cylinder for pores to exist there; give "
+                       "it a container of planes in place of the cylinder, or more spheres",
+                   {{spheres.ids[alone.front()]}, {}});
+}
+
 }  // namespace
 
 Triangulation triangulate(const Spheres& spheres) {
   const std::vector<Vertex> order = along_curve(spheres);
-  const Regular regular = build(spheres, order);
+  const std::vector<Flat> flats = flats_of(spheres);
+  const Regular regular = build(spheres, order, flats);
   Triangulation result;
-  const auto periodic = std::count(spheres.periodic.begin(), spheres.periodic.end(), true);
-  const auto walls = static_cast<std::size_t>(face_count - 2 * periodic);
-  if (regular.number_of_vertices() < static_cast<std::size_t>(spheres.size()) + walls) {
+  if (regular.number_of_vertices() < static_cast<std::size_t>(spheres.size()) + flats.size()) {
     refuse_equal_centres(spheres);
     result.hidden = hidden_spheres(regular, order, spheres);
   }
-  const auto cells = number_cells(regular, spheres.size());
+  const auto cells = number_cells(regular, spheres.size(), flats);
   result.vertices.resize(cells.size());
   result.neighbours.resize(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) {
     auto& vertices = result.vertices[c];
     vertices = vertices_of(cells[c]);
     for (Vertex& vertex : vertices)
-      if (!is_wall(vertex)) vertex = order[vertex];
-    for (int i = 0; i < 4; ++i) result.neighbours[c][i] = cells[c]->neighbor(i)->info();
+      vertex = is_wall(vertex) ? flats[wall_number(vertex)].wall : order[vertex];
+    for (int i = 0; i < 4; ++i) result.neighbours[c][i] = neighbour_of(cells[c], i, flats);
     arrange(vertices, result.neighbours[c], spheres);
   }
+  if (flats.size() > static_cast<std::size_t>(spheres.wall_count())) refuse_lone_spheres(result, spheres);
   return result;
 }
 

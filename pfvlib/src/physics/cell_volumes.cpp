@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/cell_volumes.hpp"
 
+#include "network/facets.hpp"
+
 namespace pfv {
 
 namespace {
@@ -33,37 +35,60 @@ CellVolume prism(const Vector& b, const Vector& c, const Vector& w, double heigh
   return result;
 }
 
-/// Edge (a, a+b) and its projections on two walls; u and v are the distances of its ends from them.
-CellVolume slab(const Vector& b, const Vector& w1, const Vector& w2, double ua, double va,
-                double ub, double vb) {
+/// Edge (a, a+b) and its feet on two walls; `at_a` and `at_b`: the walls as its ends see them.
+CellVolume slab(const Vector& b, const WallPair& at_a, const WallPair& at_b) {
   CellVolume result;
-  const Vector along = w1.cross(w2);
+  const Vector &w1 = at_a.first, &w2 = at_a.second, &along = at_a.along;
+  const double ua = at_a.u, va = at_a.v, ub = at_b.u, vb = at_b.v, c = at_a.c, sine2 = at_a.sine2;
   const double length = b.dot(along);
-  const double section = (2.0 * ua * va + 2.0 * ub * vb + ua * vb + ub * va) / 6.0;
+  const double uv = (2.0 * ua * va + 2.0 * ub * vb + ua * vb + ub * va) / 6.0;
+  const double squares = (ua * ua + ua * ub + ub * ub + va * va + va * vb + vb * vb) / 3.0;
+  const double section = (2.0 * uv - c * squares) / (2.0 * sine2);
   result.volume = length * section;
-  result.gradient[0] = -section * along - length * (2.0 * va + vb) / 6.0 * w1 -
-                       length * (2.0 * ua + ub) / 6.0 * w2;
-  result.gradient[1] = section * along - length * (2.0 * vb + va) / 6.0 * w1 -
-                       length * (2.0 * ub + ua) / 6.0 * w2;
-  result.gradient[2] = length * (va + vb) / 2.0 * w1;
-  result.gradient[3] = length * (ua + ub) / 2.0 * w2;
+  const Vector of_a1 = length * ((2.0 * va + vb) - c * (2.0 * ua + ub)) / 6.0 / sine2 * w1;
+  const Vector of_a2 = length * ((2.0 * ua + ub) - c * (2.0 * va + vb)) / 6.0 / sine2 * w2;
+  result.gradient[0] = -section * along - of_a1 - of_a2;
+  result.gradient[1] = section * along - length * ((2.0 * vb + va) - c * (2.0 * ub + ua)) / 6.0 / sine2 * w1 -
+                       length * ((2.0 * ub + ua) - c * (2.0 * vb + va)) / 6.0 / sine2 * w2;
+  result.gradient[2] = length * ((va + vb) - c * (ua + ub)) / 2.0 / sine2 * w1;
+  result.gradient[3] = length * ((ua + ub) - c * (va + vb)) / 2.0 / sine2 * w2;
   return result;
 }
 
-CellVolume block(const Vector& w1, const Vector& w2, const Vector& w3, double h1, double h2,
-                 double h3) {
+/// The corner in which three walls meet. A wall's part of it are two right triangles, which end at the edges with
+/// the two others; where a foot lies beyond an edge they are negative.
+CellVolume block(int k, const std::array<Vertex, 4>& cell, const Spheres& spheres) {
   CellVolume result;
-  result.volume = h1 * h2 * h3;
-  result.gradient[1] = h2 * h3 * w1;
-  result.gradient[2] = h3 * h1 * w2;
-  result.gradient[3] = h1 * h2 * w3;
-  result.gradient[0] = -(result.gradient[1] + result.gradient[2] + result.gradient[3]);
+  const Vector centre = spheres.centres.col(k);
+  const Vector apex = corner_of_walls(cell[1], cell[2], cell[3], spheres) - centre;
+  result.gradient[0].setZero();
+  for (int i = 1; i < 4; ++i) {
+    const Vertex next = cell[i % 3 + 1], last = cell[(i + 1) % 3 + 1];
+    const WallPair with_next(k, cell[i], next, spheres), with_last(k, cell[i], last, spheres);
+    double area;
+    if (with_next.c == 0.0 && with_last.c == 0.0 && with_next.second.dot(with_last.second) == 0.0) {
+      area = with_next.v * with_last.v;
+    } else {
+      const Vector foot = with_next.u * with_next.first;
+      area = 0.5 * ((with_next.to_edge() - foot).cross(apex - foot) + (apex - foot).cross(with_last.to_edge() - foot))
+                       .dot(with_next.first);
+    }
+    result.gradient[i] = area * with_next.first;
+    result.gradient[0] -= result.gradient[i];
+    result.volume += with_next.u * area / 3.0;
+  }
   return result;
 }
 
 }  // namespace
 
 CellVolume cell_volume(const std::array<Vertex, 4>& cell, const Spheres& spheres) {
+  if (round_corner(cell, spheres) > 0) {
+    CellVolume result;
+    result.volume = round_cell_volume(cell, spheres);
+    result.gradient.fill(Vector::Zero());
+    return result;
+  }
   const int a = cell[0];
   const Vector b = spheres.towards(a, cell[1]);
   const Vector c = spheres.towards(a, cell[2]);
@@ -76,9 +101,8 @@ CellVolume cell_volume(const std::array<Vertex, 4>& cell, const Spheres& spheres
     return prism(b, c, d, mean);
   }
   if (!is_wall(cell[1]))
-    return slab(b, c, d, height(a, cell[2]), height(a, cell[3]), height(cell[1], cell[2]),
-                height(cell[1], cell[3]));
-  return block(b, c, d, height(a, cell[1]), height(a, cell[2]), height(a, cell[3]));
+    return slab(b, {a, cell[2], cell[3], spheres}, {cell[1], cell[2], cell[3], spheres});
+  return block(a, cell, spheres);
 }
 
 }  // namespace pfv

@@ -27,13 +27,20 @@ Eigen::Matrix3d spring_along(const Eigen::Vector3d& normal, const ContactStiffne
 }
 
 /// From one place to the nearest image of another.
-Eigen::Vector3d nearest(Eigen::Vector3d way, const Box& box) {
+Eigen::Vector3d nearest(Eigen::Vector3d way, const Container& box) {
   for (int axis = 0; axis < 3; ++axis)
     if (box.periodic[axis]) {
       const double length = box.upper[axis] - box.lower[axis];
       way[axis] -= length * std::round(way[axis] / length);
     }
   return way;
+}
+
+/// A face that does not exist since the packing repeats across it.
+bool is_periodic(const Container& container, const Surface& surface) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (container.periodic[axis] && surface.is_plane() && surface.normal[axis] != 0.0) return true;
+  return false;
 }
 
 void check(const ContactStiffness& stiffness) {
@@ -61,7 +68,7 @@ double estimated_time_step(double mass, double radius, double viscosity) {
   return mass / (400.0 * viscosity * radius);
 }
 
-ContactSprings::ContactSprings(const Packing& packing, const Box& box, ContactStiffness stiffness)
+ContactSprings::ContactSprings(const Packing& packing, const Container& box, ContactStiffness stiffness)
     : spheres_(packing.size()) {
   check(stiffness);
   const auto count = static_cast<int>(packing.size());
@@ -88,11 +95,10 @@ ContactSprings::ContactSprings(const Packing& packing, const Box& box, ContactSt
       if (!(left(a) < packing.positions(0, order[j]) + packing.radii[order[j]])) touch(a, order[j]);
   }
   for (int k = 0; k < count; ++k)
-    for (const Face face : all_faces) {
-      const int axis = axis_of(face);
-      if (!box.periodic[axis] &&
-          std::abs(box.position(face) - packing.positions(axis, k)) < packing.radii[k])
-        springs_.push_back({k, -1, spring_along(Eigen::Vector3d::Unit(axis), stiffness)});
+    for (const ContainerFace& face : box.faces) {
+      const Surface& surface = face.surface;
+      if (is_periodic(box, surface) || !(surface.distance(packing.positions.col(k)) < packing.radii[k])) continue;
+      springs_.push_back({k, -1, spring_along(surface.outward_at(packing.positions.col(k)), stiffness)});
     }
 }
 

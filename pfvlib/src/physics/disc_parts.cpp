@@ -3,6 +3,7 @@
 
 #include "geometry/arctangent.hpp"
 #include "geometry/disc_sections.hpp"
+#include "network/facets.hpp"
 
 #include <cmath>
 #include <utility>
@@ -39,7 +40,10 @@ FlatFacet flatten(const std::array<Vertex, 3>& facet, int corner, const Spheres&
   result.others = {flat(to_next), flat(to_previous)};
   result.polygon.add(Eigen::Vector2d::Zero());
   result.polygon.add(flat(to_next));
-  if (next_wall && previous_wall) result.polygon.add(flat(to_next + to_previous));
+  if (next_wall && previous_wall) {
+    const WallPair walls(k, next, previous, spheres);
+    result.polygon.add(flat(walls.c == 0.0 ? Eigen::Vector3d(to_next + to_previous) : walls.to_edge()));
+  }
   if (next_wall && !previous_wall)
     result.polygon.add(flat(to_previous + reach(previous, next)));
   if (!next_wall && previous_wall) result.polygon.add(flat(to_next + reach(next, previous)));
@@ -118,6 +122,16 @@ bool moment_in_triangle(const std::array<Vertex, 3>& facet, int corner, const Sp
 
 }  // namespace
 
+namespace {
+
+/// A swept facet's normal at one of its spheres.
+Eigen::Vector3d normal_at(const std::array<Vertex, 3>& facet, int corner, const Spheres& spheres) {
+  const int k = facet[corner];
+  return spheres.towards(k, facet[(corner + 1) % 3]).cross(spheres.towards(k, facet[(corner + 2) % 3])).normalized();
+}
+
+}  // namespace
+
 DiscPart disc_part(const std::array<Vertex, 3>& facet, int corner, const Spheres& spheres,
                    const Eigen::Vector3d& normal, double area) {
   const int k = facet[corner];
@@ -128,7 +142,8 @@ DiscPart disc_part(const std::array<Vertex, 3>& facet, int corner, const Spheres
     return {0.5 * radius * radius * std::atan2(u.cross(v).norm(), u.dot(v)),
             moment_of_sector(u.normalized(), v.normalized(), radius)};
   }
-  FlatFacet flat = flatten(facet, corner, spheres, normal);
+  FlatFacet flat = flatten(facet, corner, spheres,
+                           is_swept(facet, spheres) ? normal_at(facet, corner, spheres) : normal);
   for (int i = 0; i < 2; ++i) {
     const Vertex other = facet[(corner + 1 + i) % 3];
     if (is_wall(other)) continue;

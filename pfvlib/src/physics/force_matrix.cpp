@@ -57,6 +57,7 @@ struct Makings {
   int spheres;
   ForceParts parts;
 
+  int rows() const { return spheres + vertices.wall_count(); }
   /// The part of throat t's area that acts on corner k of its facet f.
   double area(int t, int f, int k) const {
     double sum = 0.0;
@@ -94,15 +95,14 @@ class ThroatLoads {
     first_ = m_.network.throat_facets[t];
     last_ = m_.network.throat_facets[t + 1];
     const Eigen::Vector3d normal = m_.throats.normal.col(t);
-    if (m_.parts.moments) {
-      measure(normal);
-      if (m_.parts.viscous) find_couple(normal);
-    }
+    const bool rubs_on_wall = m_.parts.viscous && has_rubbing_wall();
+    if (m_.parts.moments || rubs_on_wall) measure(normal);
+    if (m_.parts.moments && m_.parts.viscous) find_couple(normal);
     for (int f = first_; f < last_; ++f)
       for (int k = 0; k < 3; ++k) {
         Vector6d& load = loads[3 * (f - first_) + k];
         load.head<3>() = m_.area(t, f, k) * normal;
-        if (m_.parts.moments)
+        if (m_.parts.moments || (rubs_on_wall && is_wall(vertex(f, k))))
           load.tail<3>() = moment(f, k, normal);
         else
           load.tail<3>().setZero();
@@ -112,6 +112,13 @@ class ThroatLoads {
  private:
   Vertex vertex(int f, int k) const { return m_.network.facet_vertices[f][k]; }
   auto centre(int f, int k) const { return m_.vertices.centres.col(vertex(f, k)); }
+
+  bool has_rubbing_wall() const {
+    for (int f = first_; f < last_; ++f)
+      for (int k = 1; k < 3; ++k)
+        if (is_wall(vertex(f, k)) && m_.shares[f][k] != 0.0) return true;
+    return false;
+  }
 
   /// First moments of the discs, and the moment about the corner of the box of a unit pressure on the fluid
   /// area: that on the facets less that on the discs.
@@ -194,7 +201,7 @@ struct CornerLists {
   std::vector<int> begin, corner, throat_of_facet;
 
   explicit CornerLists(const Makings& m)
-      : begin(m.spheres + 7, 0), throat_of_facet(m.network.throat_facets.back()) {
+      : begin(m.rows() + 1, 0), throat_of_facet(m.network.throat_facets.back()) {
     m.for_each_corner([&](int, int f, int k) { ++begin[m.row(f, k) + 1]; });
     for (std::size_t row = 1; row < begin.size(); ++row) begin[row] += begin[row - 1];
     std::vector<int> next(begin.begin(), begin.end() - 1);
@@ -233,7 +240,7 @@ class RowPores {
 /// The pattern of S: each row's pores, ascending.
 void find_pattern(ForceMatrix& matrix, const Makings& m, Team& team) {
   const CornerLists lists(m);
-  const int rows = m.spheres + face_count, pieces = team.threads();
+  const int rows = m.rows(), pieces = team.threads();
   const auto bound = [&](int number) {
     return static_cast<int>(static_cast<std::int64_t>(rows) * number / pieces);
   };
@@ -300,6 +307,7 @@ ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
                          ForceParts parts, Team& team) {
   const Makings makings{network, vertices, throats, shares, spheres, parts};
   ForceMatrix matrix;
+  matrix.spheres = spheres;
   find_pattern(matrix, makings, team);
   matrix.value.setZero(6, matrix.row_begin.back());
   std::vector<Vector6d> loads;
@@ -349,7 +357,7 @@ Loads gradient_forces(const PoreNetwork& network, const Spheres& vertices, const
                       const ViscousShares& shares, int spheres, ForceParts parts,
                       const Eigen::Vector3d& gradient) {
   const Makings makings{network, vertices, throats, shares, spheres, parts};
-  Loads loads = no_motion(spheres);
+  Loads loads = no_motion(spheres, vertices.wall_count());
   ThroatLoads loads_of_throat(makings);
   std::vector<Vector6d> own;
   for (int t = 0; t < network.throats(); ++t) {

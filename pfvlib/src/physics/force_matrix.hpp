@@ -18,6 +18,7 @@ namespace pfv {
 /// row N + f the viscous force on face f. An entry is the force (m²) and the moment (m³) that the pressure
 /// of one pore gives.
 struct ForceMatrix {
+  int spheres = 0;
   std::vector<int> row_begin{0};
   std::vector<int> pore;
   Matrix6Xd value;
@@ -25,7 +26,8 @@ struct ForceMatrix {
   int rows() const { return static_cast<int>(row_begin.size()) - 1; }
 };
 
-/// `moments`: where forces act besides; without them all act at the centres of the spheres, as in the papers.
+/// `moments`: where forces act besides; without them those on spheres act at their centres, as in the papers. Those
+/// on walls act where they act in any case, so that a wall that turns takes its share along.
 struct ForceParts {
   bool pressure = true, viscous = true, moments = true;
 };

@@ -4,6 +4,7 @@
 #include "network/facets.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pfv {
 
@@ -34,7 +35,14 @@ void add_facets(const PoreNetwork& network, const Spheres& spheres,
   }
 }
 
-/// The pieces on the faces of the box, one a cell and face; what enters through a contact is spread
+/// A wall's outward normal at the middle of the cell's spheres.
+Eigen::Vector3d outward_at(const std::array<Vertex, 4>& cell, int wall, const Spheres& spheres) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 4 && !is_wall(cell[i]); ++i) sum += spheres.outward(cell[i], cell[wall]);
+  return spheres.wall(cell[wall]).is_plane() ? spheres.wall(cell[wall]).surface.normal : sum.normalized();
+}
+
+/// The pieces on the faces of the container, one a cell and face; what enters through a contact is spread
 /// over its cells by area.
 void add_bases(const PoreNetwork& network, const Spheres& spheres,
                const PoreBoundaries& boundaries, const std::vector<double>& inflows,
@@ -47,17 +55,12 @@ void add_bases(const PoreNetwork& network, const Spheres& spheres,
     for (int i = 0; i < 4; ++i) {
       const auto& cell = network.cell_vertices[c];
       if (!is_wall(cell[i])) continue;
-      const int face = wall_number(cell[i]), axis = face / 2;
       const auto facet = facet_opposite(cell, i);
-      const double area = std::abs(area_vector(facet, spheres)[axis]);
-      Eigen::Vector3d middle = facet_middle(facet, spheres);
-      middle[axis] = face % 2 ? spheres.edges[axis] : 0.0;
-      const auto found = std::lower_bound(
-          contacts.begin(), contacts.end(), std::pair(network.cell_pore[c], face),
-          [](const PoreBoundaries::Contact& contact, const std::pair<int, int>& wanted) {
-            return std::pair(contact.pore, contact.face) < wanted;
-          });
-      const auto contact = static_cast<std::size_t>(found - contacts.begin());
+      const WallSurface& wall = spheres.wall(cell[i]);
+      const double area = std::abs(area_vector(facet, spheres).dot(outward_at(cell, i, spheres)));
+      const Eigen::Vector3d middle = put_on(wall, facet_middle(facet, spheres));
+      const auto contact =
+          static_cast<std::size_t>(boundaries.contact_of(network.cell_pore[c], wall_number(cell[i])));
       sides.push_back({network.cell_pore[c], middle, area, 0.0});
       contact_of.push_back(contact);
       total[contact] += area;
@@ -71,12 +74,29 @@ void add_bases(const PoreNetwork& network, const Spheres& spheres,
 
 }  // namespace
 
+namespace {
+
+/// Of the two right triangles with the legs u and v that make it up.
+Eigen::Vector3d middle_of_kite(const Eigen::Vector3d& start, const WallPair& walls) {
+  const Eigen::Vector3d edge = walls.to_edge();
+  const double first = walls.u * (walls.v - walls.u * walls.c), second = walls.v * (walls.u - walls.v * walls.c);
+  const double sum = first + second;
+  if (!(std::abs(sum) > 0.0)) return start + edge / 2.0;
+  return start + (first * (walls.u * walls.first + edge) + second * (walls.v * walls.second + edge)) / (3.0 * sum);
+}
+
+}  // namespace
+
 Eigen::Vector3d facet_middle(const std::array<Vertex, 3>& facet, const Spheres& spheres) {
   const int a = facet[0];
   const Eigen::Vector3d start = spheres.centres.col(a), second = spheres.towards(a, facet[1]),
                         third = spheres.towards(a, facet[2]);
   if (!is_wall(facet[2])) return start + (second + third) / 3.0;
   const double height = spheres.distance(a, wall_number(facet[2]));
+  if (is_wall(facet[1])) {
+    const WallPair walls(a, facet[1], facet[2], spheres);
+    if (walls.c != 0.0) return middle_of_kite(start, walls);
+  }
   if (is_wall(facet[1]))
     return start + 0.5 * (spheres.distance(a, wall_number(facet[1])) * second + height * third);
   // two triangles: both centres and the foot of the second, the first centre and both feet

@@ -3,6 +3,7 @@
 
 #include "geometry/solid_angle.hpp"
 #include "network/facets.hpp"
+#include "physics/cell_volumes.hpp"
 #include "physics/disc_parts.hpp"
 #include "physics/facet_shapes.hpp"
 
@@ -63,22 +64,47 @@ Halves halves_of(const FacetShape& shape, const std::array<Vertex, 3>& facet,
   return halves;
 }
 
+/// Of a facet with two walls: the side on one of them, from the foot to the edge with the other, m.
+double leg_on(Vertex wall, Vertex other, int k, const Spheres& spheres) {
+  const WallPair walls(k, wall, other, spheres);
+  return walls.leg() / std::sqrt(walls.sine2);
+}
+
 /// The strip of wall under one side of the facet, out to P on either side; only where fluid sticks.
 void add_wall(Halves& halves, const PoreNetwork& network, const PoreBoundaries& boundaries,
               const Spheres& spheres, int t, int f, int corner) {
   const auto& facet = network.facet_vertices[f];
   const int face = wall_number(facet[corner]);
   const double side_length =
-      is_wall(facet[1]) ? spheres.distance(facet[0], wall_number(facet[corner == 1 ? 2 : 1]))
+      is_wall(facet[1]) ? leg_on(facet[corner], facet[corner == 1 ? 2 : 1], facet[0], spheres)
                         : spheres.towards(facet[0], facet[1])
                               .cross(spheres.towards(facet[0], facet[2]))
                               .norm();
   for (int side = 0; side < 2; ++side) {
     const int pore = network.throat_pores[t][side];
-    if (!(boundaries.no_slip_faces[pore] >> face & 1)) continue;
+    if (!(boundaries.no_slip_faces[pore] & face_bit(face))) continue;
     const double area = 0.5 * side_length * halves.height[side];
     halves.gamma[side] += area;
     halves.gamma_of_vertex[corner] += area;
+  }
+}
+
+/// At a round wall: cones out to it, and the strips between the facet's trace and P, where fluid sticks.
+void measure_round_halves(Halves& halves, const PoreNetwork& network, const PoreBoundaries& boundaries,
+                          const Spheres& spheres, int t, int f) {
+  const auto& facet = network.facet_vertices[f];
+  for (int side = 0; side < 2; ++side) {
+    const Eigen::Vector3d place = pore_centre(network, t, side);
+    if (is_swept(facet, spheres))
+      halves.volume[side] = halves.phi[side] =
+          (side == 0 ? -1.0 : 1.0) * cone_on_swept(facet, spheres, place);
+    const std::array<double, 3> strips = strips_on_walls(facet, spheres, place, side);
+    const int pore = network.throat_pores[t][side];
+    for (int k = 1; k < 3; ++k) {
+      if (!is_wall(facet[k]) || !(boundaries.no_slip_faces[pore] & face_bit(wall_number(facet[k])))) continue;
+      halves.gamma[side] += strips[k];
+      halves.gamma_of_vertex[k] += strips[k];
+    }
   }
 }
 
@@ -92,7 +118,10 @@ Halves measure_halves(const PoreNetwork& network, const PoreBoundaries& boundari
                    normal.dot(pore_centre(network, t, 1) - corner)};
   for (int side = 0; side < 2; ++side)
     halves.volume[side] = halves.phi[side] = area * halves.height[side] / 3.0;
+  const bool round = touches_round_wall(facet, spheres);
+  if (round) measure_round_halves(halves, network, boundaries, spheres, t, f);
   for (int k = 0; k < 3; ++k) {
+    if (is_wall(facet[k]) && round) continue;
     if (is_wall(facet[k]))
       add_wall(halves, network, boundaries, spheres, t, f, k);
     else
@@ -121,6 +150,20 @@ void add_to_pores(Throats& throats, const PoreNetwork& network, const Halves& ha
   }
 }
 
+/// Negative where more of a kite is turned over than not.
+double signed_area(const std::array<Vertex, 3>& facet, const Spheres& spheres, const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d area = area_vector(facet, spheres);
+  return std::copysign(area.norm(), area.dot(normal));
+}
+
+/// What discs leave of a facet. Discs do not overlap: what they take beyond the whole is round-off, but for a
+/// turned-over kite, whose forces must add up to its area all the same.
+double fluid_area_of(double area, double discs) {
+  constexpr double round_off = 1e-9;
+  const double rest = area - discs;
+  return rest < 0.0 && rest > -round_off * std::abs(area) ? 0.0 : rest;
+}
+
 /// Walls come last.
 bool has_wall(const std::array<Vertex, 3>& facet) { return is_wall(facet[2]); }
 
@@ -134,8 +177,8 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
     const auto& facet = network.facet_vertices[f];
     const FacetShape& shape = shapes[f - network.throat_facets[t]];
     const bool walled = has_wall(facet);
-    const double area = walled ? area_vector(facet, spheres).norm() : shape.area;
     const Eigen::Vector3d normal = walled ? unit_normal(facet, spheres) : shape.normal;
+    const double area = walled ? signed_area(facet, spheres, normal) : shape.area;
     Halves& half = halves[f - network.throat_facets[t]];
     half = walled ? measure_halves(network, boundaries, spheres, t, f, area, normal)
                   : halves_of(shape, facet, spheres);
@@ -159,7 +202,7 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
             : shapes->normal;
   else
     throats.normal.col(t) = sum / throats.area[t];
-  throats.fluid_area[t] = std::max(0.0, throats.area[t] - discs);
+  throats.fluid_area[t] = fluid_area_of(throats.area[t], discs);
   throats.length[t] = (pore_centre(network, t, 1) - pore_centre(network, t, 0)).norm();
 }
 
@@ -195,6 +238,36 @@ void measure_piece(Throats& throats, const PoreNetwork& network, const PoreBound
 /// pores, which is done in order.
 constexpr int piece_size = 512, round_size = 32 * piece_size;
 
+/// Calls visit(throat, pore, area) for both sides of each facet at a round wall.
+template <class Visit>
+void for_each_round_side(const PoreNetwork& network, const Spheres& spheres, Visit&& visit) {
+  for (int t = 0; t < network.throats(); ++t)
+    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
+      const auto& facet = network.facet_vertices[f];
+      if (!touches_round_wall(facet, spheres)) continue;
+      const double area = area_vector(facet, spheres).norm();
+      for (const int pore : network.throat_pores[t]) visit(t, pore, area);
+    }
+}
+
+/// A round wall bulges out beyond the cones from the pores' centres. What it adds to a pore is shared among the
+/// facets at the wall by their areas, so that volumes add up to that of the cylinder.
+void add_bulges(Throats& throats, const PoreNetwork& network, const Spheres& spheres) {
+  std::vector<double> areas(network.pores(), 0.0), bulge(network.pores(), 0.0);
+  for_each_round_side(network, spheres, [&](int, int pore, double area) { areas[pore] += area; });
+  for (int c = 0; c < network.cells(); ++c)
+    if (const int pore = network.cell_pore[c]; areas[pore] > 0.0)
+      bulge[pore] += cell_volume(network.cell_vertices[c], spheres).volume;
+  for (int pore = 0; pore < network.pores(); ++pore)
+    if (areas[pore] > 0.0) bulge[pore] -= throats.pore_volume[pore];
+  for_each_round_side(network, spheres, [&](int t, int pore, double area) {
+    const double share = bulge[pore] * area / areas[pore];
+    throats.volume[t] += share;
+    throats.pore_volume[pore] += share;
+    throats.pore_fluid_volume[pore] += share;
+  });
+}
+
 }  // namespace
 
 // Facets inside a merged pore carry no flow; seen from its one centre their two pyramids cancel.
@@ -223,6 +296,11 @@ Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& bounda
       for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
         add_to_pores(throats, network, halves[f - first_facet], t);
   }
+  for (const WallSurface& wall : spheres.walls)
+    if (!wall.is_plane()) {
+      add_bulges(throats, network, spheres);
+      break;
+    }
   return throats;
 }
 

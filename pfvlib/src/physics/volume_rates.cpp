@@ -14,6 +14,7 @@ VolumeRateMatrix volume_rate_matrix(const PoreNetwork& network, const Spheres& s
   VolumeRateMatrix matrix;
   std::vector<int>& begin = matrix.row_begin;
   begin.assign(network.pores() + 1, 0);
+  for (const int sphere : network.vertex_sphere) matrix.spheres = std::max(matrix.spheres, sphere + 1);
   for (const int pore : network.cell_pore) begin[pore + 1] += 4;
   for (int pore = 0; pore < network.pores(); ++pore) begin[pore + 1] += begin[pore];
   std::vector<int> next(begin.begin(), begin.end() - 1);
@@ -34,9 +35,9 @@ VolumeRateMatrix volume_rate_matrix(const PoreNetwork& network, const Spheres& s
 
 namespace {
 
-Eigen::Index column_of(Vertex mover, const Motion& motion) {
-  return is_wall(mover) ? spheres_in(motion) + wall_number(mover) : Eigen::Index(mover);
-}
+/// `spheres`: columns of the motion before those of the faces.
+Eigen::Index column_of(Vertex mover, int spheres) { return is_wall(mover) ? spheres + wall_number(mover) : mover; }
+
 
 }  // namespace
 
@@ -48,7 +49,7 @@ void volume_rates(const VolumeRateMatrix& matrix, const Motion& motion, Team& te
     for (int pore = first; pore < last; ++pore) {
       double rate = 0.0;
       for (int e = begin[pore]; e < begin[pore + 1]; ++e)
-        rate += matrix.area.col(e).dot(motion.col(column_of(matrix.mover[e], motion)).head<3>());
+        rate += matrix.area.col(e).dot(motion.col(column_of(matrix.mover[e], matrix.spheres)).head<3>());
       rates[pore] = rate;
     }
   });
@@ -59,23 +60,52 @@ Eigen::VectorXd gross_rates(const VolumeRateMatrix& matrix, const Motion& motion
   for (int pore = 0; pore < matrix.rows(); ++pore)
     for (int e = matrix.row_begin[pore]; e < matrix.row_begin[pore + 1]; ++e)
       gross[pore] += matrix.area.col(e).norm() *
-                     motion.col(column_of(matrix.mover[e], motion)).head<3>().norm();
+                     motion.col(column_of(matrix.mover[e], matrix.spheres)).head<3>().norm();
   return gross;
 }
 
-Vector6d Bases::load(int base) const {
-  Vector6d load;
-  load.head<3>() = area[base] * outward_normal(static_cast<Face>(face[base]));
-  load.tail<3>() = moment.col(base);
-  return load;
+namespace {
+
+/// What a cell rests on at its plane wall i: the corners of the facet opposite it put on the wall, where walls are
+/// square to each other; else feet, edges and the corner of the walls.
+FacetCorners base_corners(const std::array<Vertex, 4>& cell, int i, const Spheres& spheres) {
+  const Vertex wall = cell[i];
+  const std::array<Vertex, 3> facet = facet_opposite(cell, i);
+  FacetCorners base = corners_of(facet, spheres);
+  const auto is_square = [&](Vertex other) {
+    return !is_wall(other) || spheres.wall(other).surface.normal.dot(spheres.wall(wall).surface.normal) == 0.0;
+  };
+  if (is_square(facet[1]) && is_square(facet[2])) {
+    for (int corner = 0; corner < base.count; ++corner)
+      base.at[corner] = put_on(spheres.wall(wall), base.at[corner]);
+    return base;
+  }
+  const auto edge = [&](int k, Vertex other) -> Eigen::Vector3d {
+    return spheres.centres.col(k) + WallPair(k, wall, other, spheres).to_edge();
+  };
+  base.at[0] = foot_on(wall, facet[0], spheres);
+  base.at[1] = is_wall(facet[1]) ? edge(facet[0], facet[1]) : foot_on(wall, facet[1], spheres);
+  base.at[2] = is_wall(facet[1]) ? corner_of_walls(wall, facet[1], facet[2], spheres) : edge(facet[1], facet[2]);
+  base.at[3] = edge(facet[0], facet[2]);
+  return base;
 }
+
+WallPart base_of(const std::array<Vertex, 4>& cell, int i, const CellVolume& volume, const Spheres& spheres) {
+  if (round_corner(cell, spheres) > 0) return round_base(cell, i, spheres);
+  // dV / d(position of the wall) is the area of the cell's base; the facet's normal points away from the wall
+  const Eigen::Vector3d& normal = spheres.wall(cell[i]).surface.normal;
+  const double area = volume.gradient[i].dot(normal);
+  return {area, area * normal, -moment_vector(base_corners(cell, i, spheres))};
+}
+
+}  // namespace
 
 Bases measure_bases(const PoreNetwork& network, const PoreBoundaries& boundaries,
                     const Spheres& spheres) {
   const auto& contacts = boundaries.contacts;
   Bases bases;
   bases.area.assign(contacts.size(), 0.0);
-  bases.moment = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(contacts.size()));
+  bases.loads = Matrix6Xd::Zero(6, static_cast<Eigen::Index>(contacts.size()));
   for (const auto& contact : contacts) {
     bases.pore.push_back(contact.pore);
     bases.face.push_back(contact.face);
@@ -86,18 +116,11 @@ Bases measure_bases(const PoreNetwork& network, const PoreBoundaries& boundaries
     const CellVolume cell = cell_volume(vertices, spheres);
     for (int i = 1; i < 4; ++i) {
       if (!is_wall(vertices[i])) continue;
-      const int face = wall_number(vertices[i]), axis = face / 2;
-      const std::pair<int, int> key{network.cell_pore[c], face};
-      const auto found = std::lower_bound(
-          contacts.begin(), contacts.end(), key,
-          [](const auto& a, const auto& b) { return std::make_pair(a.pore, a.face) < b; });
-      const auto contact = found - contacts.begin();
-      // dV / d(position of the wall) is the area of the cell's base
-      bases.area[contact] += cell.gradient[i].dot(outward_normal(static_cast<Face>(face)));
-      FacetCorners base = corners_of(facet_opposite(vertices, i), spheres);
-      for (int corner = 0; corner < base.count; ++corner)
-        base.at[corner][axis] = face % 2 ? spheres.edges[axis] : 0.0;
-      bases.moment.col(contact) -= moment_vector(base);  // that facet's normal points away from the wall
+      const int contact = boundaries.contact_of(network.cell_pore[c], wall_number(vertices[i]));
+      const WallPart base = base_of(vertices, i, cell, spheres);
+      bases.area[contact] += base.area;
+      bases.loads.col(contact).head<3>() += base.vector;
+      bases.loads.col(contact).tail<3>() += base.moment;
     }
   }
   return bases;
@@ -143,11 +166,10 @@ void share(const ForceMatrix& forces, const SumOrder& order, const Motion& motio
 
 SumOrder sum_order(const ForceMatrix& forces, const Packing::Ids& ids, int pores, const Team& team) {
   SumOrder order;
-  const int spheres = forces.rows() - face_count;
-  if (!std::is_sorted(ids.data(), ids.data() + spheres)) {
+  if (!std::is_sorted(ids.data(), ids.data() + forces.spheres)) {
     order.rows.resize(forces.rows());
     std::iota(order.rows.begin(), order.rows.end(), 0);
-    std::sort(order.rows.begin(), order.rows.end() - face_count,
+    std::sort(order.rows.begin(), order.rows.begin() + forces.spheres,
               [&](int a, int b) { return ids[a] < ids[b]; });
   }
   if (team.threads() == 1) return order;
@@ -170,9 +192,8 @@ void reciprocal_rates(const ForceMatrix& forces, const SumOrder& order, const Ba
     scatter(forces, order, motion, rates);
   else
     share(forces, order, motion, team, rates);
-  const Eigen::Index spheres = spheres_in(motion);
   for (int b = 0; b < bases.size(); ++b)
-    if (bases.face[b] >= 0) rates[bases.pore[b]] += bases.load(b).dot(motion.col(spheres + bases.face[b]));
+    if (bases.face[b] >= 0) rates[bases.pore[b]] += bases.load(b).dot(motion.col(forces.spheres + bases.face[b]));
 }
 
 Eigen::VectorXd gross_rates(const ForceMatrix& forces, const Bases& bases, const Motion& motion,
@@ -183,11 +204,10 @@ Eigen::VectorXd gross_rates(const ForceMatrix& forces, const Bases& bases, const
     for (int e = forces.row_begin[row]; e < forces.row_begin[row + 1]; ++e)
       gross[forces.pore[e]] += forces.value.col(e).cwiseAbs().dot(own);
   }
-  const Eigen::Index spheres = spheres_in(motion);
   for (int b = 0; b < bases.size(); ++b)
     if (bases.face[b] >= 0)
       gross[bases.pore[b]] +=
-          bases.load(b).cwiseAbs().dot(motion.col(spheres + bases.face[b]).cwiseAbs());
+          bases.load(b).cwiseAbs().dot(motion.col(forces.spheres + bases.face[b]).cwiseAbs());
   return gross;
 }
 

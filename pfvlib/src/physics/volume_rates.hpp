@@ -24,10 +24,11 @@ namespace pfv {
 struct Bases {
   std::vector<int> pore, face;
   std::vector<double> area;  ///< m²
-  Eigen::Matrix3Xd moment;   ///< of a unit pressure on each about the corner of the box, m³
+  /// Of a unit pressure on each: force (m²) and moment about the network's origin (m³).
+  Matrix6Xd loads;
 
   int size() const { return static_cast<int>(pore.size()); }
-  Vector6d load(int base) const;  ///< of a unit pressure on it
+  auto load(int base) const { return loads.col(base); }
 };
 
 /// One entry for each of `boundaries.contacts` in their order; those of regions have no area.
@@ -55,6 +56,7 @@ Eigen::VectorXd gross_rates(const ForceMatrix& forces, const Bases& bases, const
 struct VolumeRateMatrix {
   std::vector<int> row_begin{0};
   std::vector<Vertex> mover;  ///< the sphere, or the wall
+  int spheres = 0;
   Eigen::Matrix3Xd area;
 
   int rows() const { return static_cast<int>(row_begin.size()) - 1; }

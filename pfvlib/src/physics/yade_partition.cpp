@@ -44,7 +44,7 @@ void add_sphere(YadeFacet& sums, Throats& throats, const Spheres& spheres,
 }  // namespace
 
 void apply_yade_partition(Throats& throats, const PoreNetwork& network, const Spheres& spheres,
-                          const Box& box) {
+                          const Container& container) {
   throats.conductance_factor.assign(network.throats(), 1.0);
   for (int t = 0; t < network.throats(); ++t) {
     const auto [i, j] = network.throat_pores[t];
@@ -61,7 +61,7 @@ void apply_yade_partition(Throats& throats, const PoreNetwork& network, const Sp
           continue;
         }
         const int face = wall_number(facet[k]);
-        if (box.faces[face].wall == Wall::symmetry) sums.wall_factor /= std::sqrt(2.0);
+        if (container.faces[face].wall == Wall::symmetry) sums.wall_factor /= std::sqrt(2.0);
         sums.gamma += throats.facet_gamma[f][k];  // a no-slip wall's strip is the same in both
       }
       throats.volume[t] += sums.volume;

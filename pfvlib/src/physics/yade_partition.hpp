@@ -14,6 +14,6 @@ namespace pfv {
 /// - a symmetry wall divides the conductance by sqrt(2) (Throats::conductance_factor).
 /// The sums over all throats are then no longer the pore volume and the solid surface.
 void apply_yade_partition(Throats& throats, const PoreNetwork& network, const Spheres& spheres,
-                          const Box& box);
+                          const Container& container);
 
 }  // namespace pfv

@@ -7,9 +7,9 @@
 
 namespace pfv {
 
-bool same_kinds(const Box& a, const Box& b) {
+bool same_kinds(const Container& a, const Container& b) {
   if (a.patches.size() != b.patches.size() || a.regions.size() != b.regions.size() ||
-      a.periodic != b.periodic)
+      a.periodic != b.periodic || a.is_box != b.is_box || a.faces.size() != b.faces.size())
     return false;
   for (std::size_t i = 0; i < a.regions.size(); ++i)
     if (a.regions[i].lower != b.regions[i].lower || a.regions[i].upper != b.regions[i].upper ||
@@ -20,8 +20,8 @@ bool same_kinds(const Box& a, const Box& b) {
         a.patches[i].rectangle != b.patches[i].rectangle ||
         a.patches[i].boundary.kind != b.patches[i].boundary.kind)
       return false;
-  for (int f = 0; f < face_count; ++f)
-    if (a.faces[f].wall != b.faces[f].wall ||
+  for (int f = 0; f < a.face_count(); ++f)
+    if (a.faces[f].surface.kind != b.faces[f].surface.kind || a.faces[f].wall != b.faces[f].wall ||
         a.faces[f].boundary.kind != b.faces[f].boundary.kind)
       return false;
   return true;

@@ -56,7 +56,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_stresses(const BuiltNetwork& bui
   const Stresses stresses =
       pfv::sphere_stresses(built.network, built.throats, built.operators.viscous_shares, built.vertices,
                            solution.pressures, built.grains.spheres,
-                           solution.box.pressure_gradient);
+                           solution.container.pressure_gradient);
   Stresses result = Stresses::Zero(6, packed);
   for (int sphere = 0; sphere < active; ++sphere)
     result.col(built.grains.columns[sphere]) = stresses.col(sphere);
@@ -67,7 +67,7 @@ double plane_flux(const BuiltNetwork& built, const Solution& solution, const Bal
                   int axis, double position) {
   require_axis(axis);
   const PoreNetwork& network = built.network;
-  if (solution.box.periodic[axis])
+  if (solution.container.periodic[axis])
     throw InputError("the flux through a plane normal to a periodic axis is the superficial velocity "
                      "times the area: see the permeability tensor");
   const double relative = position - network.origin[axis], end = built.grains.spheres.edges[axis];
@@ -83,8 +83,11 @@ double plane_flux(const BuiltNetwork& built, const Solution& solution, const Bal
   // what enters through the two faces crosses the plane on its way to pores on the other side
   const auto& contacts = built.boundaries.contacts;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (contacts[c].face == 2 * axis) flux += balance.contact_inflows[c] * beyond(contacts[c].pore);
-    if (contacts[c].face == 2 * axis + 1)
+    if (contacts[c].face == PoreBoundaries::inside) continue;
+    const Surface& surface = solution.container.faces[contacts[c].face].surface;
+    if (!surface.is_plane()) continue;
+    if (surface.normal[axis] == -1.0) flux += balance.contact_inflows[c] * beyond(contacts[c].pore);
+    if (surface.normal[axis] == 1.0)
       flux -= balance.contact_inflows[c] * (1.0 - beyond(contacts[c].pore));
   }
   return flux;
@@ -116,9 +119,12 @@ double pressure_at(const BuiltNetwork& built, const Solution& solution,
                    const Eigen::Vector3d& place) {
   const Spheres& spheres = built.vertices;
   const Eigen::Vector3d relative = place - built.network.origin;
-  if (built.network.cells() == 0 || !(relative.array() >= 0.0).all() ||
-      !(relative.array() <= spheres.edges.array()).all())
-    throw InputError("no pressure at a place outside the box (or in a box without grains)");
+  bool within = built.network.cells() > 0 && (relative.array() >= 0.0).all() &&
+                (relative.array() <= spheres.edges.array()).all();
+  for (const WallSurface& wall : spheres.walls)  // a plane normal to an axis is a bound of the edges
+    within = within && (wall.axis >= 0 || wall.surface.distance(relative) >= 0.0);
+  if (!within)
+    throw InputError("no pressure at a place outside the container (or in one without grains)");
   const int cell = locate(built.network, spheres, relative, 0);
   return solution.pressures[built.network.cell_pore[cell]];
 }

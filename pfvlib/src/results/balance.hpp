@@ -19,7 +19,7 @@ struct Balance {
   Eigen::VectorXd correction;           ///< to the pressures, beyond the digits of a double, Pa
   std::vector<double> throat_fluxes;    ///< from the first pore of a throat to its second, m³/s
   std::vector<double> contact_inflows;  ///< into the box through each boundary contact, m³/s
-  std::array<FaceResult, 6> faces;
+  std::vector<FaceResult> faces;
 };
 
 /// Cost: one solve, counted in `solves`, and a pass over the throats.
@@ -35,7 +35,7 @@ double traffic(const BuiltNetwork& built, const Solution& solution);
 
 /// Sum of the forces on spheres and faces, over what `balance_terms` says; 0 without forces.
 double force_balance_error(const BuiltNetwork& built, const Solution& solution,
-                           const std::array<FaceResult, 6>& faces);
+                           const std::vector<FaceResult>& faces);
 
 /// Permeability and tensor with their estimated error, where they have a meaning; `report` holds the
 /// porosity already. Cost: a solve for each periodic axis, counted in `solves`.

@@ -10,8 +10,8 @@
 
 namespace pfv {
 
-Totals totals_of(const Box& box, const std::vector<BoundaryPart>& parts) {
-  std::vector<double> of_boundary(boundary_count(box), 0.0);
+Totals totals_of(const Container& container, const std::vector<BoundaryPart>& parts) {
+  std::vector<double> of_boundary(boundary_count(container), 0.0);
   Totals totals;
   for (const BoundaryPart& part : parts) {
     of_boundary[part.boundary] += part.inflow;
@@ -21,9 +21,9 @@ Totals totals_of(const Box& box, const std::vector<BoundaryPart>& parts) {
   return totals;
 }
 
-std::vector<OpeningResult> openings_of(const Box& box, const std::vector<BoundaryPart>& parts) {
-  const auto faces = static_cast<int>(all_faces.size());
-  std::vector<OpeningResult> openings(boundary_count(box) - faces);
+std::vector<OpeningResult> openings_of(const Container& container, const std::vector<BoundaryPart>& parts) {
+  const int faces = container.face_count();
+  std::vector<OpeningResult> openings(boundary_count(container) - faces);
   std::vector<double> sums(openings.size(), 0.0);
   for (const BoundaryPart& part : parts) {
     if (part.boundary < faces) continue;
@@ -33,7 +33,7 @@ std::vector<OpeningResult> openings_of(const Box& box, const std::vector<Boundar
     sums[part.boundary - faces] += part.pressure;
   }
   for (std::size_t i = 0; i < openings.size(); ++i) {
-    openings[i].name = boundary_name(box, faces + static_cast<int>(i));
+    openings[i].name = boundary_name(container, faces + static_cast<int>(i));
     if (openings[i].pores > 0)
       openings[i].pressure = sums[i] / static_cast<double>(openings[i].pores);
   }
@@ -49,35 +49,40 @@ double mass_error(const Totals& totals, double volume_rate, double storage_rate,
   return scale > 0.0 ? net / scale : 0.0;
 }
 
-std::optional<int> axis_of_flow(const Box& box) {
-  if (!box.patches.empty() || !box.regions.empty()) return {};
-  int axis = -1, open = 0;
-  for (const Face face : all_faces) {
-    const Boundary& boundary = box[face].boundary;
-    if (!boundary.is_open()) continue;
-    if (boundary.profile) return {};
-    ++open;
-    if (open == 1) axis = axis_of(face);
-    if (axis_of(face) != axis) return {};
+std::optional<std::array<int, 2>> faces_of_flow(const Container& container) {
+  constexpr double parallel = 1e-9;
+  if (!container.patches.empty() || !container.regions.empty()) return {};
+  std::vector<int> open;
+  for (int f = 0; f < container.face_count(); ++f) {
+    const ContainerFace& face = container.faces[f];
+    if (!face.boundary.is_open()) continue;
+    if (face.boundary.profile || !face.surface.is_plane()) return {};
+    open.push_back(f);
   }
-  if (open != 2 || box.periodic[axis]) return {};
-  return axis;
+  if (open.size() != 2) return {};
+  const auto normal = [&](int i) { return container.faces[open[i]].surface.normal; };
+  if (!((normal(0) + normal(1)).norm() < parallel)) return {};
+  for (int axis = 0; axis < 3; ++axis)
+    if (container.periodic[axis] && normal(0)[axis] != 0.0) return {};
+  return std::array<int, 2>{open[0], open[1]};
 }
 
-std::optional<double> permeability_of(const Box& box, int axis, double viscosity,
-                                      const Totals& totals, double difference) {
+std::optional<double> permeability_of(const Container& container, const std::array<int, 2>& faces,
+                                      double viscosity, const Totals& totals,
+                                      const std::array<double, 2>& pressures) {
+  const double difference = std::abs(pressures[0] - pressures[1]);
   if (!(difference > 0.0)) return {};
-  const double length = box.upper[axis] - box.lower[axis];
-  const double area = box.area(static_cast<Face>(2 * axis));
+  const double length =
+      container.faces[faces[1]].surface.offset + container.faces[faces[0]].surface.offset;
+  const double area = face_areas(container)[faces[pressures[0] >= pressures[1] ? 0 : 1]];
   const double rate = 0.5 * (totals.inflow + totals.outflow);
   return viscosity * rate * length / (difference * area);
 }
 
-double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, const Box& box,
+double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, const Container& container,
                            double driven) {
-  double largest_area = 0.0;
-  for (const Face face : all_faces) largest_area = std::max(largest_area, box.area(face));
-  const double scale = std::max(largest_pressure * largest_area, driven);
+  const std::vector<double> areas = face_areas(container);
+  const double scale = std::max(largest_pressure * *std::max_element(areas.begin(), areas.end()), driven);
   return scale > 0.0 ? sum.norm() / scale : 0.0;
 }
 

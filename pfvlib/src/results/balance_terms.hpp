@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/report.hpp"
 #include "solve/linear_solver.hpp"
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -26,9 +27,9 @@ struct BoundaryPart {
   double pressure;  ///< Pa
 };
 
-Totals totals_of(const Box& box, const std::vector<BoundaryPart>& parts);
+Totals totals_of(const Container& container, const std::vector<BoundaryPart>& parts);
 /// What crosses each patch and region.
-std::vector<OpeningResult> openings_of(const Box& box, const std::vector<BoundaryPart>& parts);
+std::vector<OpeningResult> openings_of(const Container& container, const std::vector<BoundaryPart>& parts);
 
 /// The net of all fluxes over the largest of them. Where inflow and outflow cancel within each
 /// boundary (a wave on one face) their gross sum takes its place, and where all of them are round-off
@@ -36,16 +37,18 @@ std::vector<OpeningResult> openings_of(const Box& box, const std::vector<Boundar
 double mass_error(const Totals& totals, double volume_rate, double storage_rate,
                   double could = 0.0);
 
-/// The axis of the two opposite faces that alone are not sealed, each with one value; else nothing.
-std::optional<int> axis_of_flow(const Box& box);
+/// The two parallel planes that alone are not sealed, each with one value; else nothing.
+std::optional<std::array<int, 2>> faces_of_flow(const Container& container);
 
-/// mu Q L / (dp S), m²; nothing where dp is 0.
-std::optional<double> permeability_of(const Box& box, int axis, double viscosity,
-                                      const Totals& totals, double difference);
+/// mu Q L / (dp S), m², with the area of the face that has the higher pressure; nothing where dp is 0.
+/// `pressures`: on the two faces, Pa.
+std::optional<double> permeability_of(const Container& container, const std::array<int, 2>& faces,
+                                      double viscosity, const Totals& totals,
+                                      const std::array<double, 2>& pressures);
 
 /// |sum| of the forces on spheres and faces, over the largest pressure times the largest face, or
 /// over what a macroscopic gradient drives where that is more.
-double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, const Box& box,
+double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, const Container& container,
                            double driven);
 
 /// |b - A x| / |b|; 0 where there is nothing to solve.

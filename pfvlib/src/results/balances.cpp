@@ -18,10 +18,10 @@ std::vector<double> contact_inflows(const BuiltNetwork& built, const Solution& s
   const auto& contacts = built.boundaries.contacts;
   const auto carries = [&](const PoreBoundaries::Contact& contact) {
     // what a region brings in enters inside, also into a pore that touches a face
-    if (contact.boundary >= first_region(solution.box) &&
+    if (contact.boundary >= first_region(solution.container) &&
         contact.face != PoreBoundaries::inside)
       return false;
-    const Boundary& boundary = boundary_of(solution.box, contact.boundary);
+    const Boundary& boundary = boundary_of(solution.container, contact.boundary);
     const int unknown = built.unknowns.of_pore[contact.pore];
     if (unknown == Unknowns::imposed) return boundary.imposes_pressure();
     return boundary.imposes_flux() &&
@@ -31,14 +31,19 @@ std::vector<double> contact_inflows(const BuiltNetwork& built, const Solution& s
   for (std::size_t first = 0; first < contacts.size();) {
     std::size_t last = first;
     double area = 0.0;
+    int open = 0;
     for (; last < contacts.size() && contacts[last].pore == contacts[first].pore; ++last)
-      if (carries(contacts[last])) area += built.bases.area[last];
-    // a pore on several open faces: by its base on each
+      if (carries(contacts[last])) {
+        area += std::abs(built.bases.area[last]);
+        ++open;
+      }
+    // a pore on several open faces: by its base on each; where it has none to speak of, alike
     for (std::size_t c = first; c < last; ++c) {
       if (!carries(contacts[c])) continue;
       if (contacts[c].face == PoreBoundaries::inside) result[c] = inflow[contacts[c].pore];
-      else if (area > 0.0)
-        result[c] = inflow[contacts[c].pore] * built.bases.area[c] / area;
+      else
+        result[c] = inflow[contacts[c].pore] *
+                    (area > 0.0 ? std::abs(built.bases.area[c]) / area : 1.0 / open);
     }
     first = last;
   }
@@ -52,7 +57,7 @@ std::vector<BoundaryPart> boundary_parts(const BuiltNetwork& built, const Soluti
   std::vector<BoundaryPart> parts;
   for (std::size_t c = 0; c < inflows.size(); ++c) {
     const PoreBoundaries::Contact& contact = built.boundaries.contacts[c];
-    const bool of_region = contact.boundary >= first_region(solution.box);
+    const bool of_region = contact.boundary >= first_region(solution.container);
     if (of_region && contact.face != PoreBoundaries::inside) continue;  // it enters inside
     parts.push_back({contact.boundary, inflows[c], solution.pressures[contact.pore]});
   }
@@ -78,10 +83,10 @@ namespace {
 /// them from their images; grains and walls carry it.
 Eigen::Vector3d driving_force(const BuiltNetwork& built, const Solution& solution) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  if (solution.box.pressure_gradient.isZero(0.0)) return sum;
+  if (solution.container.pressure_gradient.isZero(0.0)) return sum;
   const PoreNetwork& network = built.network;
   for (int t = 0; t < network.throats(); ++t)
-    sum += solution.box.pressure_gradient.dot(network.throat_offset(t)) *
+    sum += solution.container.pressure_gradient.dot(network.throat_offset(t)) *
            built.throats.area[t] * built.throats.normal.col(t);
   return sum;
 }
@@ -89,7 +94,7 @@ Eigen::Vector3d driving_force(const BuiltNetwork& built, const Solution& solutio
 }  // namespace
 
 double force_balance_error(const BuiltNetwork& built, const Solution& solution,
-                           const std::array<FaceResult, 6>& faces) {
+                           const std::vector<FaceResult>& faces) {
   if (solution.loads.cols() == 0) return 0.0;
   const int spheres = built.grains.spheres.size();
   const Eigen::Vector3d driven = driving_force(built, solution);
@@ -97,7 +102,7 @@ double force_balance_error(const BuiltNetwork& built, const Solution& solution,
   for (const FaceResult& face : faces) sum += face.force_pressure + face.force_viscous;
   const double largest_pressure =
       solution.pressures.size() > 0 ? solution.pressures.cwiseAbs().maxCoeff() : 0.0;
-  return force_balance_error(sum, largest_pressure, solution.box, driven.norm());
+  return force_balance_error(sum, largest_pressure, solution.container, driven.norm());
 }
 
 Balance balance_of(const BuiltNetwork& built, const Solution& solution, std::int64_t& solves) {

@@ -15,7 +15,7 @@ void add_geometry(Report& report, BuiltNetwork& built) {
   report.hidden = static_cast<std::int64_t>(built.network.hidden.size());
   report.pores = built.network.pores();
   report.unknowns = built.unknowns.count;
-  const double volume = built.grains.spheres.edges.prod();
+  const double volume = built.grains.spheres.volume;
   // where spheres as large as the box leave nothing, round-off may leave less
   report.pore_volume = std::clamp(volume - solid->volume, 0.0, volume);
   report.porosity = report.pore_volume / volume;
@@ -44,7 +44,7 @@ Report network_report(BuiltNetwork& built, const Problem& problem, const Solutio
   add_geometry(report, built);
   const std::vector<BoundaryPart> parts =
       boundary_parts(built, solution, balance.contact_inflows);
-  const Totals totals = totals_of(solution.box, parts);
+  const Totals totals = totals_of(solution.container, parts);
   add_balances(report, built, solution, balance, totals);
   add_permeability(report, built, problem, solution, totals, balance.throat_fluxes, solves);
   report.solver = built.kept.solver->name();
@@ -52,7 +52,7 @@ Report network_report(BuiltNetwork& built, const Problem& problem, const Solutio
   report.solver_made_of = made_of(options.solver, options.ordering);
   report.conductance = name_of(options.conductance);
   report.faces = balance.faces;
-  report.openings = openings_of(solution.box, parts);
+  report.openings = openings_of(solution.container, parts);
   report.threads = options.threads;
   report.peak_memory_bytes = peak_memory();
   return report;
@@ -60,10 +60,10 @@ Report network_report(BuiltNetwork& built, const Problem& problem, const Solutio
 
 void add_account(Report& report, const FluidMemory& memory, const BuiltNetwork& built,
                  const Fluid& fluid, const Solution& solution) {
-  const double volume = solution.box.volume();
+  const double volume = solution.geometry.volume;
   report.fluid_volume = fluid_space(volume, built.grains.spheres);
   report.fluid_came_in = memory.account.came_in;
-  report.fluid_balance_error = fluid_missing(memory, built, fluid, solution.box) /
+  report.fluid_balance_error = fluid_missing(memory, built, fluid, solution.container) /
                                std::max(*report.fluid_volume, 0.01 * volume);
 }
 

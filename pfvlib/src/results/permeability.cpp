@@ -29,28 +29,27 @@ Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vect
 std::optional<double> permeability_along_gradient(const BuiltNetwork& built, double viscosity,
                                                   const Solution& solution,
                                                   const std::vector<double>& fluxes) {
-  const Eigen::Vector3d& gradient = solution.box.pressure_gradient;
+  const Eigen::Vector3d& gradient = solution.container.pressure_gradient;
   const Eigen::Vector3d velocity =
-      superficial_velocity(built.network, fluxes, solution.box.volume());
+      superficial_velocity(built.network, fluxes, solution.geometry.volume);
   return -viscosity * velocity.dot(gradient) / gradient.squaredNorm();
 }
 
-/// mu Q L / (dp S) between two opposite open faces (method: Darcy's law); absent where the flow is
+/// mu Q L / (dp S) between two parallel open faces (method: Darcy's law); absent where the flow is
 /// not steady or not one-dimensional.
 std::optional<double> permeability(const BuiltNetwork& built, double viscosity,
                                    const Solution& solution, const Totals& totals,
                                    const std::vector<double>& fluxes) {
   if (solution.moving || built.kept.compressible()) return {};
-  if (!solution.box.pressure_gradient.isZero(0.0))
+  if (!solution.container.pressure_gradient.isZero(0.0))
     return permeability_along_gradient(built, viscosity, solution, fluxes);
-  const std::optional<int> axis = axis_of_flow(solution.box);
-  if (!axis) return {};
-  std::array<double, 2> pressure{0.0, 0.0};
+  const std::optional<std::array<int, 2>> faces = faces_of_flow(solution.container);
+  if (!faces) return {};
+  std::array<double, 2> pressures{0.0, 0.0};
   for (const auto& contact : built.boundaries.contacts)
-    if (contact.face / 2 == *axis)
-      pressure[contact.face % 2] = solution.relative_pressures[contact.pore];
-  return permeability_of(solution.box, *axis, viscosity, totals,
-                         std::abs(pressure[0] - pressure[1]));
+    for (int i = 0; i < 2; ++i)
+      if (contact.face == (*faces)[i]) pressures[i] = solution.relative_pressures[contact.pore];
+  return permeability_of(solution.container, *faces, viscosity, totals, pressures);
 }
 
 struct TensorFlow {
@@ -62,16 +61,16 @@ struct TensorFlow {
 /// kept factor, for a unit gradient and no other drive.
 std::optional<TensorFlow> tensor_flow(const BuiltNetwork& built, double viscosity,
                                       const Solution& solution, std::int64_t& solves) {
-  if (!solution.box.any_periodic() || solution.moving || built.kept.compressible()) return {};
+  if (!solution.container.any_periodic() || solution.moving || built.kept.compressible()) return {};
   // a pressure on another face excludes a gradient
   for (const auto& contact : built.boundaries.contacts)
-    if (boundary_of(solution.box, contact.boundary).is_open()) return {};
+    if (boundary_of(solution.container, contact.boundary).is_open()) return {};
   const PoreNetwork& network = built.network;
   TensorFlow result;
   Eigen::Matrix3d& tensor = result.permeability;
   result.dissipation.assign(network.throats(), 0.0);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!solution.box.periodic[axis]) continue;
+    if (!solution.container.periodic[axis]) continue;
     const Eigen::Vector3d gradient = Eigen::Vector3d::Unit(axis);
     const Eigen::VectorXd pressures = homogeneous_pressures(
         built, gradient_sources(network, built.conductances.value, gradient), solves);
@@ -82,10 +81,10 @@ std::optional<TensorFlow> tensor_flow(const BuiltNetwork& built, double viscosit
       result.dissipation[t] += fluxes[t] * drop;
     }
     tensor.col(axis) = -viscosity *
-                       superficial_velocity(network, fluxes, solution.box.volume());
+                       superficial_velocity(network, fluxes, solution.geometry.volume);
   }
   for (int axis = 0; axis < 3; ++axis)
-    if (!solution.box.periodic[axis]) tensor.row(axis).setZero();
+    if (!solution.container.periodic[axis]) tensor.row(axis).setZero();
   return result;
 }
 
@@ -93,7 +92,7 @@ std::vector<double> throat_dissipation(const BuiltNetwork& built, const Solution
                                        std::vector<double> fluxes) {
   for (int t = 0; t < built.network.throats(); ++t)
     fluxes[t] *= driving_pressure(built.network, t, solution.relative_pressures,
-                                  solution.box.pressure_gradient);
+                                  solution.container.pressure_gradient);
   return fluxes;
 }
 

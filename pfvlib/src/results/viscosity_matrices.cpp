@@ -34,7 +34,7 @@ std::vector<Eigen::Matrix3d> viscosity_matrices(BuiltNetwork& built, const Probl
   make_force_matrices(built, problem, counts);
   make_volume_rates(built, problem, counts);
   const std::vector<int>& active = built.grains.columns;
-  Motion alone = no_motion(spheres);
+  Motion alone = no_motion(spheres, problem.container.face_count());
   Eigen::VectorXd opened;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const auto found = std::lower_bound(active.begin(), active.end(), columns[c]);

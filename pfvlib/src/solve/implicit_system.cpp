@@ -38,7 +38,7 @@ void add_row(YieldingRows& rows, std::vector<YieldingRows::Entry>& entries) {
 
 YieldingRows yielding_rows(const Unknowns& unknowns, const ForceMatrix& forces, const Bases& bases,
                            const Matrix6Xd& yielding) {
-  const int spheres = forces.rows() - face_count;
+  const int spheres = forces.spheres;
   YieldingRows rows;
   rows.of_unknown.resize(unknowns.count);
   std::vector<YieldingRows::Entry> entries;

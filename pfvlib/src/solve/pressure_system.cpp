@@ -17,11 +17,11 @@ struct PoreCondition {
 };
 
 std::vector<PoreCondition> conditions_of_pores(const PoreNetwork& network,
-                                               const PoreBoundaries& boundaries, const Box& box) {
+                                               const PoreBoundaries& boundaries, const Container& container) {
   std::vector<PoreCondition> conditions(network.pores());
   for (const auto& contact : boundaries.contacts) {
     PoreCondition& condition = conditions[contact.pore];
-    const Boundary& boundary = boundary_of(box, contact.boundary);
+    const Boundary& boundary = boundary_of(container, contact.boundary);
     if (boundary.imposes_pressure()) condition.pressure = true;
     if (boundary.imposes_flux() && condition.flux_boundary < 0)
       condition.flux_boundary = contact.boundary;
@@ -107,11 +107,11 @@ std::vector<Isolated> find_isolated(const PoreNetwork& network,
 }  // namespace
 
 Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                         const Box& box) {
-  const auto conditions = conditions_of_pores(network, boundaries, box);
+                         const Container& container) {
+  const auto conditions = conditions_of_pores(network, boundaries, container);
   Unknowns unknowns;
   unknowns.of_pore.assign(network.pores(), Unknowns::imposed);
-  unknowns.of_boundary.assign(boundary_count(box), -1);
+  unknowns.of_boundary.assign(boundary_count(container), -1);
   for (int pore = 0; pore < network.pores(); ++pore) {
     if (conditions[pore].pressure) {
       unknowns.imposed_pores.push_back(pore);
@@ -126,16 +126,16 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
     unknowns.of_pore[pore] = shared;
   }
   for (int b = 0; b < static_cast<int>(unknowns.of_boundary.size()); ++b) {
-    const Boundary& boundary = boundary_of(box, b);
+    const Boundary& boundary = boundary_of(container, b);
     if (boundary.drives_flux() && unknowns.of_boundary[b] < 0)
-      throw InputError(boundary_name(box, b) +
+      throw InputError(boundary_name(container, b) +
                        ": its flux has no pore to enter (all its pores carry an imposed pressure, "
                        "or it has none); give the flux to another face or enlarge the patch or region");
   }
   return unknowns;
 }
 
-void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries, const Box& box,
+void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries, const Container& container,
                       double time, Eigen::VectorXd& pressures) {
   const auto& contacts = boundaries.contacts;  // those of one pore stand together
   for (std::size_t first = 0, last = 0; first < contacts.size(); first = last) {
@@ -143,7 +143,7 @@ void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundari
     double sum = 0.0;
     int count = 0;
     for (last = first; last < contacts.size() && contacts[last].pore == pore; ++last) {
-      const Boundary& boundary = boundary_of(box, contacts[last].boundary);
+      const Boundary& boundary = boundary_of(container, contacts[last].boundary);
       if (!boundary.imposes_pressure()) continue;
       sum += boundary.profile
                  ? boundary.profile(network.origin + network.pore_centres.col(pore), time)
@@ -189,7 +189,7 @@ PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& c
   return system;
 }
 
-void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, const Box& box,
+void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, const Container& container,
                      const Eigen::VectorXd& sources, const Eigen::VectorXd& imposed,
                      Eigen::VectorXd& b) {
   b.setZero(unknowns.count);
@@ -198,7 +198,7 @@ void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, con
       b[unknowns.of_pore[pore]] += sources[static_cast<Eigen::Index>(pore)];
   for (std::size_t boundary = 0; boundary < unknowns.of_boundary.size(); ++boundary)
     if (unknowns.of_boundary[boundary] >= 0)
-      b[unknowns.of_boundary[boundary]] += boundary_of(box, static_cast<int>(boundary)).value;
+      b[unknowns.of_boundary[boundary]] += boundary_of(container, static_cast<int>(boundary)).value;
   for (const auto& coupling : system.couplings)
     b[coupling.unknown] += coupling.conductance * imposed[coupling.pore];
 }

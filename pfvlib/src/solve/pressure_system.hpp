@@ -2,7 +2,7 @@
 #pragma once
 
 #include "network/pore_boundaries.hpp"
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/network.hpp"
 #include "solve/linear_solver.hpp"
 
@@ -23,11 +23,11 @@ struct Unknowns {
 /// Numbers the unknowns. A pore on several faces takes the first of: imposed pressure, imposed flux
 /// (the first face), none. Throws InputError for a flux boundary that is left without a pore.
 Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                         const Box& box);
+                         const Container& container);
 
 /// Sets the pressure (Pa) of each pore with an imposed one, and no other: the mean over its boundaries
 /// with a pressure.
-void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries, const Box& box,
+void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundaries, const Container& container,
                       double time, Eigen::VectorXd& pressures);
 
 /// A set of pores that no open throat joins to an imposed pressure.
@@ -55,7 +55,7 @@ PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& c
 
 /// b = sources of each pore (m³/s) + inflow of the flux boundaries + what the imposed pressures
 /// (relative to the reference; read at their pores alone) drive.
-void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, const Box& box,
+void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, const Container& container,
                      const Eigen::VectorXd& sources, const Eigen::VectorXd& imposed,
                      Eigen::VectorXd& b);
 

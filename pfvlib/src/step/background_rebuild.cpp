@@ -16,7 +16,7 @@ namespace {
 /// What the thread works on, its own copy.
 struct Task {
   PackingArrays grains;
-  Box box;
+  Container container;
   Fluid fluid;
   Options options;
   double step;
@@ -29,7 +29,7 @@ struct Task {
       WorkRecord& work = result.work;
       const PhaseClock total(work.seconds.total);
       const auto alone = std::make_shared<Team>();  // the other threads are those of the steps
-      const Problem problem{box, fluid, options, alone};
+      const Problem problem{container, fluid, options, alone};
       result.network = derive_network(grains.view(), problem, work);
       factor_pressures(*result.network, problem, step, work);
       if (moving) {
@@ -51,7 +51,7 @@ BackgroundRebuild::BackgroundRebuild(const Packing& packing, const Problem& prob
                                      bool moving) {
   Task task{{packing.ids, packing.positions, packing.radii, Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0),
              Eigen::VectorXd()},
-            problem.box,
+            problem.container,
             problem.fluid,
             problem.options,
             step,

@@ -2,6 +2,7 @@
 #include "step/built_network.hpp"
 
 #include "geometry/pi.hpp"
+#include "network/facets.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,13 +23,15 @@ CellExtents cell_extents(const PoreNetwork& network, const Spheres& spheres, int
   CellExtents extents;
   for (const auto& cell : network.cell_vertices) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vertex vertex : cell) {
-      if (is_wall(vertex) && wall_number(vertex) / 2 != axis) continue;
-      const double x = !is_wall(vertex)             ? spheres.centres(axis, vertex)
-                       : wall_number(vertex) % 2 != 0 ? spheres.edges[axis]
-                                                      : 0.0;
+    const auto reach = [&](double x) {
       low = std::min(low, x);
       high = std::max(high, x);
+    };
+    for (const Vertex vertex : cell) {
+      if (!is_wall(vertex)) reach(spheres.centres(axis, vertex));
+      else  // as far as the feet of the cell's spheres on it
+        for (int i = 0; i < 4 && !is_wall(cell[i]); ++i)
+          reach(put_on(spheres.wall(vertex), spheres.centres.col(cell[i]))[axis]);
     }
     extents.low.push_back(low);
     extents.high.push_back(high);

@@ -10,6 +10,7 @@
 #include "physics/throats.hpp"
 #include "physics/volume_rates.hpp"
 #include "solve/linear_solver.hpp"
+#include "problem/container_geometry.hpp"
 #include "solve/pressure_system.hpp"
 
 #include <array>
@@ -54,6 +55,7 @@ struct KeptOperators {
 /// All that is derived from one packing and kept until the next triangulation.
 struct BuiltNetwork {
   ActiveGrains grains;
+  ContainerGeometry geometry;  ///< of the container that it was built in, about the network's origin
   PoreNetwork network;
   Spheres vertices;  ///< what the network's vertices stand for: the grains, or those and their images
   PoreBoundaries boundaries;

@@ -18,7 +18,7 @@ Eigen::VectorXd continuity_defect(const BuiltNetwork& built, const Solution& sol
     const int unknown = unknowns.of_boundary[b];
     if (unknown < 0) continue;
     const auto first = std::find(unknowns.of_pore.begin(), unknowns.of_pore.end(), unknown);
-    defect[first - unknowns.of_pore.begin()] += boundary_of(solution.box, static_cast<int>(b)).value;
+    defect[first - unknowns.of_pore.begin()] += boundary_of(solution.container, static_cast<int>(b)).value;
   }
   return defect;
 }
@@ -37,12 +37,12 @@ Eigen::VectorXd gross_sources(const BuiltNetwork& built, const Solution& solutio
     const auto first = std::find(unknowns.of_pore.begin(), unknowns.of_pore.end(),
                                  unknowns.of_boundary[b]);
     gross[first - unknowns.of_pore.begin()] +=
-        std::abs(boundary_of(solution.box, static_cast<int>(b)).value);
+        std::abs(boundary_of(solution.container, static_cast<int>(b)).value);
   }
-  if (!solution.box.pressure_gradient.isZero(0.0))
+  if (!solution.container.pressure_gradient.isZero(0.0))
     for (int t = 0; t < network.throats(); ++t) {
       const double rate = std::abs(built.conductances.value[t] *
-                                   solution.box.pressure_gradient.dot(network.throat_offset(t)));
+                                   solution.container.pressure_gradient.dot(network.throat_offset(t)));
       for (const int pore : network.throat_pores[t]) gross[pore] += rate;
     }
   if (built.kept.compressible())
@@ -86,7 +86,7 @@ std::vector<double> throat_fluxes(const BuiltNetwork& built, const Solution& sol
     const auto [i, j] = network.throat_pores[t];
     fluxes[t] =
         built.conductances.value[t] *
-        (driving_pressure(network, t, solution.relative_pressures, solution.box.pressure_gradient) +
+        (driving_pressure(network, t, solution.relative_pressures, solution.container.pressure_gradient) +
          (correction[i] - correction[j]));
   }
   return fluxes;

@@ -7,13 +7,13 @@
 namespace pfv {
 
 void refuse_periodic_shear(const Problem& problem) {
-  if (problem.options.shear_viscous && problem.box.any_periodic())
+  if (problem.options.shear_viscous && problem.container.any_periodic())
     throw InputError("shear viscous forces are not known for periodic axes; switch them off");
 }
 
 void find_rates_of_packing(const StepTask& task, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
-  solution.moving = !at_rest(packing, problem.box, problem.options.torques);
+  solution.moving = !at_rest(packing, problem.container, problem.options.torques);
   refuse_undetermined(problem, solution.moving);
   set_motion(built, problem, packing, solution.motion);
   if (solution.moving)

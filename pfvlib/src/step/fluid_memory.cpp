@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/fluid_memory.hpp"
 
+#include "problem/container_geometry.hpp"
+
 namespace pfv {
 
 namespace {
@@ -32,7 +34,7 @@ void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetw
   const Fluid& fluid = problem.fluid;
   if (!account.open) {
     account = {true,
-               fluid_space(problem.box.volume(), now.grains.spheres) +
+               fluid_space(volume_of(problem.container), now.grains.spheres) +
                    compressed_in(now, fluid, memory.pressures) - swept,
                0.0, 0.0};
     return;
@@ -40,7 +42,7 @@ void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetw
   if (!before.grains) return;
   account.came_in -= displaced_by_newcomers(*before.grains, now.grains.spheres);
   const double growth = growth_of_grains(*before.grains, now.grains.spheres);
-  double missing = fluid_missing(memory, now, fluid, problem.box) - swept;
+  double missing = fluid_missing(memory, now, fluid, problem.container) - swept;
   if (before.moved_by_host) {
     account.came_in += missing + growth;
     missing = -growth;
@@ -62,11 +64,9 @@ void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork&
   settle_account(memory, before, now, problem, swept);
 }
 
-double swept_volume(const Box& box, double step) {
-  Eigen::Vector3d stretching = Eigen::Vector3d::Zero();
-  for (const Face face : all_faces) stretching += box[face].velocity * outward_normal(face);
-  const Eigen::Vector3d before = box.upper - box.lower - step * stretching;
-  return box.volume() - before.prod();
+double swept_volume(const Container& container, double step) {
+  if (!any_face_moves(container)) return 0.0;
+  return volume_of(container) - geometry_after(container, -step, container.lower).volume;
 }
 
 void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
@@ -83,9 +83,9 @@ void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid
 }
 
 double fluid_missing(const FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
-                     const Box& box) {
+                     const Container& container) {
   const FluidAccount& account = memory.account;
-  return fluid_space(box.volume(), built.grains.spheres) + account.ahead +
+  return fluid_space(volume_of(container), built.grains.spheres) + account.ahead +
          compressed_in(built, fluid, memory.pressures) - account.at_start - account.came_in;
 }
 

@@ -28,7 +28,7 @@ void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork&
                 const Problem& problem, double swept);
 
 /// What the faces have swept in a step that has just ended, m³.
-double swept_volume(const Box& box, double step);
+double swept_volume(const Container& container, double step);
 
 /// Books a step that has been taken.
 void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
@@ -37,6 +37,6 @@ void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid
 /// What is in the box beyond what was at the start and came in, m³: 0 but for what the volume rates do
 /// not know of.
 double fluid_missing(const FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
-                     const Box& box);
+                     const Container& container);
 
 }  // namespace pfv

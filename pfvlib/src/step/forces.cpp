@@ -24,7 +24,7 @@ void spread(const Columns& active, const std::vector<int>& columns, Eigen::Index
 
 void split(const BuiltNetwork& built, const Problem& problem, const Solution& solution,
            Forces& forces) {
-  const Eigen::Vector3d& gradient = problem.box.pressure_gradient;
+  const Eigen::Vector3d& gradient = problem.container.pressure_gradient;
   Loads of_pressure;
   multiply(*built.operators.pressure_force_matrix, solution.relative_pressures, *problem.team,
            of_pressure);
@@ -64,8 +64,8 @@ void find_sphere_pressures(const BuiltNetwork& built, const Problem& problem,
   const SurfacePressure& around = *built.operators.surface_pressure;
   Eigen::VectorXd means;
   multiply(around, solution.pressures, *problem.team, means);
-  if (!problem.box.pressure_gradient.isZero(0.0))
-    means -= around.offset.transpose() * problem.box.pressure_gradient;
+  if (!problem.container.pressure_gradient.isZero(0.0))
+    means -= around.offset.transpose() * problem.container.pressure_gradient;
   all.setZero(size);
   const std::vector<int>& columns = built.grains.columns;
   for (std::size_t i = 0; i < columns.size(); ++i)
@@ -82,7 +82,7 @@ void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& pac
   const std::vector<int>& columns = built.grains.columns;
   Loads& loads = solution.loads;
   multiply(*built.operators.force_matrix, solution.relative_pressures, *problem.team, loads);
-  if (!problem.box.pressure_gradient.isZero(0.0)) loads += gradient_loads(built, problem);
+  if (!problem.container.pressure_gradient.isZero(0.0)) loads += gradient_loads(built, problem);
   spread(loads.topRows<3>(), columns, packing.size(), forces.total);
   if (options.torques) spread(loads.bottomRows<3>(), columns, packing.size(), forces.torque);
   if (options.split_forces) split(built, problem, solution, forces);
@@ -92,24 +92,21 @@ void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& pac
     find_sphere_pressures(built, problem, solution, packing.size(), forces.sphere_pressure);
 }
 
-std::array<FaceResult, 6> face_forces(const BuiltNetwork& built, const Solution& solution) {
-  std::array<FaceResult, 6> faces;
+std::vector<FaceResult> face_forces(const BuiltNetwork& built, const Solution& solution) {
   const auto& contacts = built.boundaries.contacts;
-  const int spheres = built.grains.spheres.size();
-  std::array<double, 6> relative{};
+  const int spheres = built.grains.spheres.size(), count = solution.container.face_count();
+  Eigen::Matrix3Xd pushes = Eigen::Matrix3Xd::Zero(3, count);
   for (std::size_t c = 0; c < contacts.size(); ++c)
     if (contacts[c].face != PoreBoundaries::inside)
-      relative[contacts[c].face] +=
-          solution.relative_pressures[contacts[c].pore] * built.bases.area[c];
-  const Eigen::VectorXd on_growth =
-      forces_on_growth(solution.growth, built.throats, solution.relative_pressures);
-  for (const Face face : all_faces) {
-    const int f = static_cast<int>(face);
+      pushes.col(contacts[c].face) += solution.relative_pressures[contacts[c].pore] *
+                                      built.bases.load(static_cast<int>(c)).head<3>();
+  const Matrix6Xd on_growth = forces_on_growth(solution.growth, built.throats, solution.relative_pressures);
+  std::vector<FaceResult> faces(count);
+  for (int f = 0; f < count; ++f) {
+    faces[f].name = solution.container.faces[f].name;
     faces[f].force_pressure =
-        (relative[f] + on_growth[f] + solution.reference * solution.box.area(face)) *
-        outward_normal(face);
-    if (solution.loads.cols() > 0)
-      faces[f].force_viscous = solution.loads.col(spheres + f).head<3>();
+        pushes.col(f) + on_growth.col(f).head<3>() + solution.reference * solution.geometry.loads.col(f).head<3>();
+    if (solution.loads.cols() > 0) faces[f].force_viscous = solution.loads.col(spheres + f).head<3>();
   }
   return faces;
 }

@@ -17,6 +17,6 @@ void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& pac
                  WorkRecord& work, Solution& solution, Forces& forces);
 
 /// Force on each face; the fluxes are left 0.
-std::array<FaceResult, 6> face_forces(const BuiltNetwork& built, const Solution& solution);
+std::vector<FaceResult> face_forces(const BuiltNetwork& built, const Solution& solution);
 
 }  // namespace pfv

@@ -90,11 +90,11 @@ void ImplicitStep::solve(const StepTask& task, const ForcedMotion& forced, Solut
 /// packing's and the host makes v(n+3/2) of the forces, so that w(theta) = w + theta (v(n+3/2) - w).
 void ImplicitStep::find(const StepTask& task, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
-  check_dynamics(*dynamics, packing);
+  check_dynamics(*dynamics, packing, problem.container);
   solution.implicit = true;
   set_motion(built, problem, packing, solution.motion);
-  ForcedMotion forced{solution.motion, {}, yielding_of(built, *dynamics, theta * solution.dt)};
-  solution.moving = !at_rest(packing, problem.box, problem.options.torques) ||
+  ForcedMotion forced{solution.motion, {}, yielding_of(built, problem, *dynamics, theta * solution.dt)};
+  solution.moving = !at_rest(packing, problem.container, problem.options.torques) ||
                     (forced.yielding.array() > 0.0).any();
   refuse_undetermined(problem, solution.moving);
   make_force_matrices(built, problem, work.counts);

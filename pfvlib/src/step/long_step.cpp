@@ -30,7 +30,7 @@ void check_sizes(const GrainDynamics& dynamics, Eigen::Index n) {
 
 }  // namespace
 
-void check_dynamics(const GrainDynamics& dynamics, const Packing& packing) {
+void check_dynamics(const GrainDynamics& dynamics, const Packing& packing, const Container& container) {
   check_sizes(dynamics, packing.size());
   for (Eigen::Index k = 0; k < packing.size(); ++k) {
     const std::string sphere = "sphere " + std::to_string(packing.ids[k]);
@@ -42,18 +42,29 @@ void check_dynamics(const GrainDynamics& dynamics, const Packing& packing) {
         (dynamics.inertias.size() > 0 && !(dynamics.inertias[k] > 0.0)))
       throw InputError(sphere + ": its mass or inertia is not a positive number; give kg and kg m2");
   }
-  for (const Face face : all_faces) {
-    const Piston& piston = dynamics.pistons[static_cast<int>(face)];
+  for (int f = 0; f < container.face_count(); ++f) {
+    const Piston piston = piston_of(dynamics.pistons, f);
     if (!(piston.mass > 0.0) || !std::isfinite(piston.other_force))
-      throw InputError(std::string("piston ") + name_of(face) +
+      throw InputError("piston " + container.faces[f].name +
                        ": its mass must be > 0 (kg) and its other force finite (N)");
   }
 }
 
-Matrix6Xd yielding_of(const BuiltNetwork& built, const GrainDynamics& dynamics, double step) {
+int guided_axis(const Container& container, int face) {
+  int axis = 0;
+  const ContainerFace& piston = container.faces[face];
+  if (!(piston.guide.cwiseAbs().maxCoeff(&axis) > 1.0 - 1e-12))
+    throw InputError("face " + piston.name +
+                     " is a piston: it can be guided along x, y or z alone; prescribe its velocity instead");
+  return axis;
+}
+
+Matrix6Xd yielding_of(const BuiltNetwork& built, const Problem& problem, const GrainDynamics& dynamics,
+                      double step) {
   const std::vector<int>& columns = built.grains.columns;
   const auto count = static_cast<Eigen::Index>(columns.size());
-  Matrix6Xd result = no_motion(count);
+  const Container& container = problem.container;
+  Matrix6Xd result = no_motion(count, container.face_count());
   for (Eigen::Index i = 0; i < count; ++i) {
     const int k = columns[i];
     const double inertia = dynamics.inertias.size() > 0
@@ -62,10 +73,9 @@ Matrix6Xd yielding_of(const BuiltNetwork& built, const GrainDynamics& dynamics, 
     result.col(i).head<3>().setConstant(step / dynamics.masses[k]);
     result.col(i).tail<3>().setConstant(step / inertia);
   }
-  for (const Face face : all_faces) {
-    const int f = static_cast<int>(face);
-    result(axis_of(face), count + f) = step / dynamics.pistons[f].mass;
-  }
+  for (int f = 0; f < container.face_count(); ++f)
+    if (const double mass = piston_of(dynamics.pistons, f).mass; std::isfinite(mass))
+      result(guided_axis(container, f), count + f) = step / mass;
   return result;
 }
 
@@ -73,20 +83,18 @@ Loads held_loads(const StepTask& task, const Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
   const std::vector<int>& columns = built.grains.columns;
   const auto count = static_cast<Eigen::Index>(columns.size());
-  Loads held = no_motion(count);
+  const Container& container = problem.container;
+  Loads held = no_motion(count, container.face_count());
   for (Eigen::Index i = 0; i < count; ++i) {
     held.col(i).head<3>() = dynamics->other_forces.col(columns[i]);
     if (dynamics->other_torques.cols() > 0)
       held.col(i).tail<3>() = dynamics->other_torques.col(columns[i]);
     if (problem.lifts()) held.col(i).head<3>() += lift_of(problem, packing, columns[i]);
   }
-  if (!problem.box.pressure_gradient.isZero(0.0)) held += gradient_loads(built, problem);
-  for (const Face face : all_faces) {
-    const int f = static_cast<int>(face);
-    held.col(count + f).head<3>() =
-        dynamics->pistons[f].other_force * Eigen::Vector3d::Unit(axis_of(face)) +
-        solution.reference * problem.box.area(face) * outward_normal(face);
-  }
+  if (!problem.container.pressure_gradient.isZero(0.0)) held += gradient_loads(built, problem);
+  for (int f = 0; f < container.face_count(); ++f)
+    held.col(count + f).head<3>() = piston_of(dynamics->pistons, f).other_force * container.faces[f].guide +
+                                    solution.reference * solution.geometry.loads.col(f).head<3>();
   return held;
 }
 

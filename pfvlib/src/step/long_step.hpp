@@ -21,10 +21,13 @@ struct ForcedMotion {
 /// Throws InputError for settings that no long step can serve.
 void check_long_step(const Problem& problem, Coupling coupling);
 /// Throws InputError for masses and forces that are missing or make no sense.
-void check_dynamics(const GrainDynamics& dynamics, const Packing& packing);
+void check_dynamics(const GrainDynamics& dynamics, const Packing& packing, const Container& container);
 
 /// Of the active grains and the faces, which yield along their axes alone; 0 for a prescribed velocity.
-Matrix6Xd yielding_of(const BuiltNetwork& built, const GrainDynamics& dynamics, double step);
+/// The axis along which a piston is guided. Throws InputError where it is none of x, y, z.
+int guided_axis(const Container& container, int face);
+Matrix6Xd yielding_of(const BuiltNetwork& built, const Problem& problem, const GrainDynamics& dynamics,
+                      double step);
 
 /// All loads on the active grains and the pistons but those of the pressures less their reference.
 Loads held_loads(const StepTask& task, const Solution& solution);

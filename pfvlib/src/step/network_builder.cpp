@@ -10,13 +10,14 @@ namespace pfv {
 
 std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Problem& problem,
                                              WorkRecord& work) {
-  const auto& [box, fluid, options, team] = problem;
-  check(box);
+  const auto& [container, fluid, options, team] = problem;
+  check(container);
   auto fresh = std::make_unique<BuiltNetwork>();
   {
     const PhaseClock clock(work.seconds.triangulate);
-    fresh->grains = select_grains(packing, box, options.outside);
-    PoreSpace space = build_network(fresh->grains.spheres, box.lower);
+    fresh->grains = select_grains(packing, container, options.outside);
+    fresh->geometry = geometry_of(container, container.lower);
+    PoreSpace space = build_network(fresh->grains.spheres, container.lower);
     fresh->network = std::move(space.network);
     fresh->vertices = std::move(space.spheres);
     ++work.counts.triangulate;
@@ -24,10 +25,10 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Probl
   {
     const PhaseClock clock(work.seconds.throats);
     const Spheres& spheres = fresh->vertices;
-    fresh->boundaries = find_pore_boundaries(fresh->network, box);
+    fresh->boundaries = find_pore_boundaries(fresh->network, container);
     fresh->throats = measure_throats(fresh->network, fresh->boundaries, spheres, *team);
     if (options.partition == Partition::yade)
-      apply_yade_partition(fresh->throats, fresh->network, spheres, box);
+      apply_yade_partition(fresh->throats, fresh->network, spheres, container);
     fresh->conductances = conductances(options.conductance, fluid.viscosity, fresh->network,
                                        fresh->throats, spheres, *team);
     for (std::size_t t = 0; t < fresh->throats.conductance_factor.size(); ++t)
@@ -35,7 +36,7 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Probl
     fresh->bases = measure_bases(fresh->network, fresh->boundaries, spheres);
     fresh->strain_volume = strain_volumes(fresh->network, fresh->throats, spheres);
   }
-  fresh->unknowns = number_unknowns(fresh->network, fresh->boundaries, box);
+  fresh->unknowns = number_unknowns(fresh->network, fresh->boundaries, container);
   return fresh;
 }
 

@@ -14,7 +14,7 @@ namespace {
 double mean_strain(const BuiltNetwork& built, const Solution& solution,
                    const Eigen::VectorXd& changes) {
   return mean_pore_strain(built.network, built.conductances, solution.relative_pressures,
-                          solution.box.pressure_gradient, changes, built.strain_volume);
+                          solution.container.pressure_gradient, changes, built.strain_volume);
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) 
   std::size_t next = 0;
   for (Eigen::Index k = 0; k < packing.size(); ++k) {
     const bool active = next < grains.columns.size() && grains.columns[next] == k;
-    if (is_inside(packing, k, problem.box) != active) return true;
+    if (is_inside(packing, k, problem.container) != active) return true;
     if (!active) continue;
     const auto i = static_cast<Eigen::Index>(next++);
     const double radius = grains.spheres.radii[i];
@@ -136,7 +136,7 @@ bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) 
     Eigen::Vector3d moved = packing.positions.col(k) - built_->network.origin -
                             grains.spheres.centres.col(i);
     for (int axis = 0; axis < 3; ++axis)  // the host may have wrapped it
-      if (problem.box.periodic[axis])
+      if (problem.container.periodic[axis])
         moved[axis] = std::remainder(moved[axis], grains.spheres.edges[axis]);
     // negated, so that a number that is not finite leads to a rebuild, whose checks name it
     if (!(3.0 * grown <= strain * radius) || !(moved.squaredNorm() <= radius * radius))

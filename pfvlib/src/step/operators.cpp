@@ -43,13 +43,13 @@ Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
   const Bases& bases = built.bases;
   for (int b = 0; b < bases.size(); ++b)
     if (bases.face[b] >= 0)
-      loads.col(spheres_in(loads) + bases.face[b]) += pressures[bases.pore[b]] * bases.load(b);
+      loads.col(built.grains.spheres.size() + bases.face[b]) += pressures[bases.pore[b]] * bases.load(b);
   return loads;
 }
 
 const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
   auto& kept = built.operators.gradient_loads;
-  const Eigen::Vector3d& gradient = problem.box.pressure_gradient;
+  const Eigen::Vector3d& gradient = problem.container.pressure_gradient;
   if (!kept || kept->first != gradient)
     kept = {gradient, gradient_forces(built.network, built.vertices, built.throats,
                                       built.operators.viscous_shares, built.grains.spheres.size(),
@@ -59,7 +59,7 @@ const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
 
 Loads shear_forces_of(const BuiltNetwork& built, double viscosity, const Motion& motion) {
   Loads sum = Loads::Zero(6, motion.cols());
-  const Eigen::Index spheres = spheres_in(motion);
+  const Eigen::Index spheres = built.grains.spheres.size();
   if (built.operators.shear_pairs)
     sum.topLeftCorner(3, spheres) = shear_forces(*built.operators.shear_pairs, viscosity,
                                                  motion.topLeftCorner(3, spheres));

@@ -14,14 +14,14 @@ namespace pfv {
 void set_motion(const BuiltNetwork& built, const Problem& problem, const Packing& packing,
                 Motion& motion) {
   const std::vector<int>& columns = built.grains.columns;
-  motion = no_motion(static_cast<Eigen::Index>(columns.size()));
+  motion = no_motion(static_cast<Eigen::Index>(columns.size()), problem.container.face_count());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     auto own = motion.col(static_cast<Eigen::Index>(i));
     if (packing.velocities.cols() > 0) own.head<3>() = packing.velocities.col(columns[i]);
     if (problem.options.torques && packing.angular_velocities.cols() > 0)
       own.tail<3>() = packing.angular_velocities.col(columns[i]);
   }
-  set_faces(motion, problem.box, built.network.origin);
+  set_faces(motion, problem.container, built.network.origin);
 }
 
 void find_rates(BuiltNetwork& built, const Problem& problem, const Motion& motion, WorkRecord& work,
@@ -37,7 +37,7 @@ void find_rates(BuiltNetwork& built, const Problem& problem, const Motion& motio
 void impose(const BuiltNetwork& built, Solution& solution) {
   const auto& pores = built.unknowns.imposed_pores;
   Eigen::VectorXd& relative = solution.relative_pressures;
-  impose_pressures(built.network, built.boundaries, solution.box, solution.time, relative);
+  impose_pressures(built.network, built.boundaries, solution.container, solution.time, relative);
   const double first = pores.empty() ? 0.0 : relative[pores.front()];
   double sum = 0.0;  // of the differences: where all are equal, the reference is exact
   for (const int pore : pores) sum += relative[pore] - first;
@@ -53,7 +53,7 @@ Eigen::VectorXd sources_of(const BuiltNetwork& built, const Solution& solution) 
   if (built.kept.compressible())
     sources.array() +=
         built.kept.storage.array() * (solution.previous_pressures.array() - solution.reference);
-  const Eigen::Vector3d& gradient = solution.box.pressure_gradient;
+  const Eigen::Vector3d& gradient = solution.container.pressure_gradient;
   if (!gradient.isZero(0.0))
     sources += gradient_sources(built.network, built.conductances.value, gradient);
   return sources;
@@ -66,7 +66,7 @@ void solve_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& 
   const PhaseClock clock(work.seconds.solve);
   solution.relative_pressures.resize(built.network.pores());
   impose(built, solution);
-  right_hand_side(built.kept.system, built.unknowns, solution.box, sources_of(built, solution),
+  right_hand_side(built.kept.system, built.unknowns, solution.container, sources_of(built, solution),
                   solution.relative_pressures, solution.right_side);
   if (built.unknowns.count > 0) {
     solver.solve(solution.right_side, solution.unknown_pressures);
@@ -118,12 +118,8 @@ void refine_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver&
 
 Loads pressure_loads(const BuiltNetwork& built, const Solution& solution) {
   Loads sum = loads_of(built, solution.relative_pressures);
-  const Eigen::VectorXd growth =
-      forces_on_growth(solution.growth, built.throats, solution.relative_pressures);
-  for (const Face face : all_faces) {
-    const auto f = static_cast<Eigen::Index>(face);
-    sum.col(spheres_in(sum) + f).head<3>() += growth[f] * outward_normal(face);
-  }
+  const Matrix6Xd growth = forces_on_growth(solution.growth, built.throats, solution.relative_pressures);
+  sum.rightCols(growth.cols()) += growth;
   return sum;
 }
 

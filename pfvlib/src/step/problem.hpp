@@ -2,7 +2,7 @@
 #pragma once
 
 #include "parallel/team.hpp"
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/options.hpp"
 
@@ -12,7 +12,7 @@ namespace pfv {
 
 /// The problem as it is posed now, and who shares the work. All that a network depends on beside the grains.
 struct Problem {
-  const Box& box;
+  const Container& container;
   const Fluid& fluid;
   const Options& options;
   const std::shared_ptr<Team>& team;

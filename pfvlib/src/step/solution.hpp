@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pfv/box.hpp"
+#include "pfv/container.hpp"
 #include "physics/rigid_motion.hpp"
 #include "step/box_growth.hpp"
 
@@ -13,7 +13,8 @@ namespace pfv {
 /// permeability and fields follow. Arrays have one entry a pore where nothing else is said.
 struct Solution {
   // what it is the solution of
-  Box box;            ///< with the values at that instant
+  Container container;    ///< with the values at that instant
+  ContainerGeometry geometry;  ///< of it, about the network's origin
   double time = 0.0;  ///< instant of the boundary values, s
   double dt = 0.0;    ///< of the step, s; 0: a steady state
   bool moving = false;

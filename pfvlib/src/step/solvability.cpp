@@ -14,9 +14,9 @@ namespace pfv {
 
 namespace {
 
-bool any_boundary(const Box& box, bool (Boundary::*is)() const) {
-  for (int b = 0; b < boundary_count(box); ++b)
-    if ((boundary_of(box, b).*is)()) return true;
+bool any_boundary(const Container& container, bool (Boundary::*is)() const) {
+  for (int b = 0; b < boundary_count(container); ++b)
+    if ((boundary_of(container, b).*is)()) return true;
   return false;
 }
 
@@ -60,15 +60,15 @@ std::vector<int> spheres_at(const PoreNetwork& network, int throat) {
 }  // namespace
 
 void refuse_undetermined(const Problem& problem, bool moving) {
-  const auto& [box, fluid, options, team] = problem;
+  const auto& [container, fluid, options, team] = problem;
   // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
-  if (fluid.bulk_modulus || box.any_periodic() || any_boundary(box, &Boundary::imposes_pressure))
+  if (fluid.bulk_modulus || container.any_periodic() || any_boundary(container, &Boundary::imposes_pressure))
     return;
   if (moving)
     throw InputError("the grains or faces move, the fluid is incompressible, and no face, patch "
                      "or region has a pressure: nothing determines the pressure; give a pressure to a face, "
                      "or a bulk modulus");
-  if (any_boundary(box, &Boundary::drives_flux))
+  if (any_boundary(container, &Boundary::drives_flux))
     throw InputError("a flux is imposed, the fluid is incompressible, and no face, patch or region has a "
                      "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
                      "modulus");
@@ -132,7 +132,7 @@ Forced forced_out(const BuiltNetwork& built, const Solution& solution, const Iso
                                                   return built.unknowns.of_pore[pore] == shared;
                                                 });
     if (!fed) continue;
-    const double flux = boundary_of(solution.box, static_cast<int>(b)).value;
+    const double flux = boundary_of(solution.container, static_cast<int>(b)).value;
     forced.net += flux;
     forced.gross += std::abs(flux);
   }

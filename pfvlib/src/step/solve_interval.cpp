@@ -29,10 +29,17 @@ double root_mean_square(const Columns& columns) {
                             : 0.0;
 }
 
-double largest_norm(const std::array<Eigen::Vector3d, 6>& faces) {
+double largest_norm(const std::vector<Eigen::Vector3d>& faces) {
   double largest = 0.0;
   for (const Eigen::Vector3d& force : faces) largest = std::max(largest, force.norm());
   return largest;
+}
+
+/// one - factor other, face by face.
+std::vector<Eigen::Vector3d> minus(std::vector<Eigen::Vector3d> one, double factor,
+                                   const std::vector<Eigen::Vector3d>& other) {
+  for (std::size_t f = 0; f < one.size(); ++f) one[f] -= factor * other[f];
+  return one;
 }
 
 double ratio(double part, double whole) { return part > 0.0 ? part / whole : 0.0; }
@@ -48,12 +55,11 @@ void SolveInterval::restart() {
 }
 
 SolveInterval::Errors SolveInterval::errors_of(const Forces& forces,
-                                               const std::array<Eigen::Vector3d, 6>& faces,
+                                               const std::vector<Eigen::Vector3d>& faces,
                                                double face_scale, double grain_scale,
                                                double apart) const {
   Eigen::Matrix3Xd change = forces.total - last_.topRows<3>();
-  std::array<Eigen::Vector3d, 6> face_change;
-  for (int f = 0; f < 6; ++f) face_change[f] = faces[f] - last_faces_[f];
+  std::vector<Eigen::Vector3d> face_change = minus(faces, 1.0, last_faces_);
   const auto error = [&] {
     return std::max(ratio(largest_norm(face_change), face_scale),
                     ratio(root_mean_square(change), grain_scale));
@@ -62,7 +68,7 @@ SolveInterval::Errors SolveInterval::errors_of(const Forces& forces,
   errors.continued = errors.held;
   if (!trend_known_) return errors;
   change -= apart * trend_.topRows<3>();
-  for (int f = 0; f < 6; ++f) face_change[f] -= apart * face_trend_[f];
+  face_change = minus(face_change, apart, face_trend_);
   errors.continued = error();
   return errors;
 }
@@ -90,7 +96,7 @@ void SolveInterval::choose(Errors errors, int most) {
 }
 
 void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
-                         const std::array<Eigen::Vector3d, 6>& faces, int steps, double face_load,
+                         const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
                          double face_area, double section, int most,
                          bool new_network) {
   if (known_ && (ids.size() != ids_.size() || ids != ids_)) restart();
@@ -110,7 +116,8 @@ void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
     change_ = errors.held;
     largest_error_ = std::max(largest_error_, error_);
     trend_ = (loads - last_) / apart;
-    for (int f = 0; f < 6; ++f) face_trend_[f] = (faces[f] - last_faces_[f]) / apart;
+    face_trend_ = minus(faces, 1.0, last_faces_);
+    for (Eigen::Vector3d& change : face_trend_) change /= apart;
     last_steps_ = steps;
     choose(errors, most);
     trend_known_ = true;
@@ -118,15 +125,14 @@ void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
   held_.offset = 0.5 * steps;
   const bool goes_on = continues_ && steps_ > 1;
   held_.slope = goes_on ? trend_ : Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, loads.cols());
-  for (int f = 0; f < 6; ++f)
-    held_.face_slope[f] = goes_on ? face_trend_[f] : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  held_.face_slope = goes_on ? face_trend_ : std::vector<Eigen::Vector3d>(faces.size(), Eigen::Vector3d::Zero());
   ids_ = ids;
   last_ = std::move(loads);
   last_faces_ = faces;
   known_ = true;
 }
 
-void SolveInterval::put_on_network(const Forces& forces, const std::array<Eigen::Vector3d, 6>& faces) {
+void SolveInterval::put_on_network(const Forces& forces, const std::vector<Eigen::Vector3d>& faces) {
   last_ = loads_of(forces);
   last_faces_ = faces;
 }

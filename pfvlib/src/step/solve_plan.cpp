@@ -81,8 +81,8 @@ void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
     return;
   }
   const double section = pi * radii.squaredNorm() / static_cast<double>(radii.size());
-  double area = 0.0;
-  for (const Face face : all_faces) area = std::max(area, flow.box().area(face));
+  const std::vector<double> areas = face_areas(flow.container());
+  const double area = *std::max_element(areas.begin(), areas.end());
   const bool new_network = flow.retriangulations() != last_network_;
   last_network_ = flow.retriangulations();
   const double load = std::max(now.load_on_faces, weight_of(now, flow.fluid()));
@@ -98,7 +98,7 @@ void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
   next_.offset = interval_.held().offset;
 }
 
-bool imposed_values_differ(const Box& now, const Box& then, double tolerance) {
+bool imposed_values_differ(const Container& now, const Container& then, double tolerance) {
   double change = 0.0, largest = 0.0;
   const auto compare = [&](const Boundary& a, const Boundary& b) {
     change = std::max(change, std::abs(a.value - b.value));
@@ -107,7 +107,7 @@ bool imposed_values_differ(const Box& now, const Box& then, double tolerance) {
       for (const auto& place : {then.lower, then.upper})
         change = std::max(change, std::abs(a.profile(place, 0.0) - b.profile(place, 0.0)));
   };
-  for (const Face face : all_faces) compare(now[face].boundary, then[face].boundary);
+  for (std::size_t f = 0; f < now.faces.size(); ++f) compare(now.faces[f].boundary, then.faces[f].boundary);
   for (std::size_t i = 0; i < now.patches.size(); ++i)
     compare(now.patches[i].boundary, then.patches[i].boundary);
   for (std::size_t i = 0; i < now.regions.size(); ++i)

@@ -57,7 +57,7 @@ void run_recursion(const StepTask& task, const ForcedMotion& forced,
 void StagedStep::find(const StepTask& task, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
   find_rates_of_packing(task, solution);
-  check_dynamics(*dynamics, packing);
+  check_dynamics(*dynamics, packing, problem.container);
   const double limit =
       limit_.of(built, problem, packing.size(), dynamics->masses, dynamics->pistons, work);
   // z: the step times the largest eigenvalue of the drag
@@ -69,7 +69,7 @@ void StagedStep::find(const StepTask& task, Solution& solution) {
   solution.relative_pressures.setZero(built.network.pores());
   impose(built, solution);  // the reference pressure acts on pistons
   const ForcedMotion forced{solution.motion, held_loads(task, solution),
-                            yielding_of(built, *dynamics, solution.dt)};
+                            yielding_of(built, problem, *dynamics, solution.dt)};
   solution.moving = true;
   run_recursion(task, forced, recursion, solution);
 }

@@ -9,7 +9,7 @@
 namespace pfv {
 
 TimeStepCheck check_time_step(FlowModel& flow, const Packing& packing, const Eigen::VectorXd& masses,
-                              const std::array<Piston, 6>& pistons, double step) {
+                              const std::vector<Piston>& pistons, double step) {
   double estimate = std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k < masses.size(); ++k)
     estimate = std::min(

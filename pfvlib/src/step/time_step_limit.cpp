@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 #include "physics/time_step_limit.hpp"
+#include "step/long_step.hpp"
 #include "step/operators.hpp"
 
 #include <cmath>
@@ -16,21 +17,20 @@ double limit_of(double eigenvalue) {
   return eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
 }
 
-/// 1 / sqrt(m) of each degree of freedom; faces are guided along their axes.
-Matrix6Xd inverse_roots(const BuiltNetwork& built, const Eigen::VectorXd& masses) {
-  const int spheres = built.grains.spheres.size();
-  Matrix6Xd root = no_motion(spheres);
+/// 1 / sqrt(m) of each degree of freedom; faces are guided along axes.
+Matrix6Xd inverse_roots(const BuiltNetwork& built, const Container& container, const Eigen::VectorXd& masses) {
+  const int spheres = built.grains.spheres.size(), faces = container.face_count();
+  Matrix6Xd root = no_motion(spheres, faces);
   for (int i = 0; i < spheres; ++i) {
     const double mass = masses[built.grains.columns[i]];
     root.col(i).head<3>().setConstant(1.0 / std::sqrt(mass));
     root.col(i).tail<3>().setConstant(
         1.0 / std::sqrt(inertia_of(mass, built.grains.spheres.radii[i])));
   }
-  const Eigen::Index packed = masses.size() - face_count;
-  for (const Face face : all_faces) {
-    const int f = static_cast<int>(face);
-    root(axis_of(face), spheres + f) = 1.0 / std::sqrt(masses[packed + f]);
-  }
+  const Eigen::Index packed = masses.size() - faces;
+  for (int f = 0; f < faces; ++f)
+    if (std::isfinite(masses[packed + f]))
+      root(guided_axis(container, f), spheres + f) = 1.0 / std::sqrt(masses[packed + f]);
   return root;
 }
 
@@ -39,7 +39,7 @@ Matrix6Xd inverse_roots(const BuiltNetwork& built, const Eigen::VectorXd& masses
 double largest_drag(const BuiltNetwork& built, const Problem& problem,
                     const Eigen::VectorXd& masses, std::int64_t& solves) {
   if (built.unknowns.count == 0 || built.grains.spheres.size() == 0) return 0.0;
-  const Matrix6Xd root = inverse_roots(built, masses);
+  const Matrix6Xd root = inverse_roots(built, problem.container, masses);
   Eigen::VectorXd opened;
   const auto drag = [&](const Eigen::VectorXd& u) {
     const Motion v = (u.reshaped(6, root.cols()).array() * root.array()).matrix();
@@ -54,17 +54,15 @@ double largest_drag(const BuiltNetwork& built, const Problem& problem,
 }  // namespace
 
 double TimeStepLimit::of(BuiltNetwork& built, const Problem& problem, Eigen::Index spheres,
-                         const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons,
+                         const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
                          WorkRecord& work) {
   if (masses.size() != spheres)
     throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
                      std::to_string(spheres) + " spheres; give one a sphere");
-  Eigen::VectorXd all(spheres + face_count);
+  const int faces = problem.container.face_count();
+  Eigen::VectorXd all(spheres + faces);
   all.head(spheres) = masses;
-  for (const Face face : all_faces) {
-    const int f = static_cast<int>(face);
-    all[spheres + f] = pistons[f].mass;
-  }
+  for (int f = 0; f < faces; ++f) all[spheres + f] = piston_of(pistons, f).mass;
   if (!(all.array() > 0.0).all())
     throw InputError("time step limit: a mass is not a positive number; give kg");
   if (limit_ && all.size() == masses_.size() && all == masses_) return *limit_;

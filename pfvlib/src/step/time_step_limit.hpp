@@ -17,7 +17,7 @@ class TimeStepLimit {
   /// s; infinite where nothing resists. `masses` of the packing's spheres, kg. Cost: some 20 to 40 solves,
   /// none when it is kept. Throws InputError.
   double of(BuiltNetwork& built, const Problem& problem, Eigen::Index spheres,
-            const Eigen::VectorXd& masses, const std::array<Piston, 6>& pistons, WorkRecord& work);
+            const Eigen::VectorXd& masses, const std::vector<Piston>& pistons, WorkRecord& work);
   void forget() { limit_.reset(); }
 
  private:

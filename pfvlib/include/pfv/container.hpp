@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/box.hpp"
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pfv {
+
+/// The shape of a wall, in the coordinates of the packing.
+struct Surface {
+  enum class Kind {
+    plane,    ///< the fluid is where normal . x <= offset
+    cylinder  ///< round; the fluid is where x is nearer to the axis than the radius
+  };
+  Kind kind = Kind::plane;
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< plane: outward unit normal
+  double offset = 0.0;                                ///< plane: m
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();    ///< cylinder: unit vector along its axis
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< cylinder: a point of the axis, m
+  double radius = 0.0;                                ///< cylinder: m
+
+  /// The normal and the axis need not have length one.
+  static Surface plane(const Eigen::Vector3d& outward_normal, const Eigen::Vector3d& through);
+  static Surface cylinder(const Eigen::Vector3d& axis, const Eigen::Vector3d& point, double radius);
+
+  bool is_plane() const { return kind == Kind::plane; }
+  /// Distance of a place from the wall, m; positive on the fluid's side.
+  double distance(const Eigen::Vector3d& place) const;
+  /// Outward unit normal at the point nearest to a place.
+  Eigen::Vector3d outward_at(const Eigen::Vector3d& place) const;
+};
+
+/// One wall of a container.
+struct ContainerFace {
+  std::string name;
+  Surface surface;
+  Wall wall = Wall::no_slip;
+  Boundary boundary;
+  // how it moves: as a rigid body. What a no-slip wall does in its own surface takes the fluid along.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< of the pivot, m/s
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad/s
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();             ///< m
+  /// The way along which a piston on this face is guided; its force and velocity are positive along it. A
+  /// unit vector; zero: none.
+  Eigen::Vector3d guide = Eigen::Vector3d::Zero();
+};
+
+/// A rectangle on a face that is normal to an axis, as `Patch`; the face by its number.
+struct ContainerPatch {
+  int face = 0;
+  std::array<double, 4> rectangle{};
+  Boundary boundary;
+};
+
+/// What holds the fluid: a closed convex set of faces, planes at any angle and round cylinders with ends
+/// square to their axis. A box is one of them, with its faces in the order xlo ... zhi.
+///
+/// A pore that touches several faces takes the first of: imposed pressure (the mean, where it touches several
+/// with different ones), imposed flux (the first face in their order), sealed.
+struct Container {
+  std::vector<ContainerFace> faces;
+  std::vector<ContainerPatch> patches;
+  std::vector<Region> regions;
+  std::array<bool, 3> periodic{false, false, false};  ///< boxes alone
+  Eigen::Vector3d pressure_gradient = Eigen::Vector3d::Zero();
+  /// The smallest box around it, m. Who moves faces calls `find_bounds`.
+  Eigen::Vector3d lower = Eigen::Vector3d::Zero(), upper = Eigen::Vector3d::Ones();
+  bool is_box = false;  ///< made from a Box
+
+  Container() = default;
+  Container(const Box& box);  // NOLINT: a box is a container
+
+  int face_count() const { return static_cast<int>(faces.size()); }
+  /// Number of the face of that name, if there is one.
+  std::optional<int> face_named(const std::string& name) const;
+  bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
+};
+
+/// Most faces that a container may have.
+inline constexpr int most_faces = 64;
+
+/// Of these faces, with `lower` and `upper` filled in. Throws InputError as `check` does.
+Container container_of(std::vector<ContainerFace> faces);
+/// Fills in `lower` and `upper`; a box keeps its own.
+void find_bounds(Container& container);
+
+/// Volume (m³), area of each face (m²). Throws InputError for a container that is not closed.
+double volume_of(const Container& container);
+std::vector<double> face_areas(const Container& container);
+
+/// The box that a container is, if it is one.
+std::optional<Box> box_of(const Container& container);
+
+/// Throws InputError when the container is open, empty or not convex, a face's name is missing or occurs twice,
+/// its shape or motion is not finite, a cylinder's ends are not square to it, or as `check(Box)` does.
+void check(const Container& container);
+
+}  // namespace pfv

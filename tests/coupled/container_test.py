@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Walls as a script has them: cylinders, planes and meshes at any angle, moving and turning ones."""
+import json
+import math
+import subprocess
+import unittest
+
+from coupled import BIN, EDGE, FLOW, HANG, CoupledTest, dump, faces, forces, largest_difference, packing
+from coupled import read_dump, read_thermo, restarted_head, write_data
+from plates import write_plate
+
+MODEL = "wall/gran model hooke/stiffness tangential history"
+HEAD = "include in.packing\n"
+FROZEN = HEAD + "unfix integr\n"
+RADIUS, MIDDLE = 0.045, EDGE / 2
+PIPE = (f"fix shell all {MODEL} primitive type 1 zcylinder {RADIUS} {MIDDLE} {MIDDLE}\n"
+        f"fix floor all {MODEL} primitive type 1 zplane 0.0\n"
+        f"fix roof all {MODEL} primitive type 1 zplane {EDGE}\n")
+IN_PIPE = ("viscosity 0.01 container face side wall shell face bottom wall floor pressure 10 "
+           "face top wall roof pressure 0")
+THERMO = ("thermo_style custom step f_flow[1] f_flow[2] f_flow[3] f_flow[4]\n"
+          "thermo_modify norm no format float %.15g\nthermo 1\n")
+
+
+def in_pipe(grains):
+    return [g for g in grains if math.hypot(g[1] - MIDDLE, g[2] - MIDDLE) + 0.3 * g[4] < RADIUS]
+
+
+class Containers(CoupledTest):
+    def setUp(self):
+        super().setUp()
+        write_data(self.folder, packing())
+
+    def static(self, container, *options):
+        """Forces of `pfv solve` on the first instant of walls.dump."""
+        (self.folder / "container.json").write_text(json.dumps(container))
+        words = [str(BIN / "pfv"), "solve", "--packing", "walls.dump", "--container", "container.json",
+                 "--viscosity", "0.01", "--forces", "forces.csv", *options]
+        done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, timeout=HANG)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [line.split(",") for line in (self.folder / "forces.csv").read_text().splitlines()[1:]]
+        return {int(row[0]): [float(value) for value in row[1:4]] for row in rows}
+
+    def test_primitive_cylinder_and_planes_are_the_container_of_the_command(self):
+        write_data(self.folder, in_pipe(packing(8)))
+        self.liggghts(HEAD + PIPE + f"fix flow all pfv {IN_PIPE}\n" + dump("walls.dump") + "run 0\n")
+        static = self.static(
+            {"planes": [{"name": "bottom", "inward_normal": [0, 0, 1], "offset": 0.0},
+                        {"name": "top", "inward_normal": [0, 0, -1], "offset": -EDGE}],
+             "cylinders": [{"name": "side", "axis": [0, 0, 1], "point": [MIDDLE, MIDDLE, 0.0],
+                            "radius": RADIUS}]},
+            "--face", "bottom:pressure=10", "--face", "top:pressure=0")
+        coupled = forces(read_dump(self.folder / "walls.dump")[0])
+        self.assertLess(largest_difference(coupled, static), 1e-12)
+
+    def test_six_walls_are_the_box(self):
+        walls = "".join(f"fix w{a}{k} all {MODEL} primitive type 1 {a}plane {k * EDGE}\n"
+                        for a in "xyz" for k in (0, 1))
+        named = " ".join(f"face {a}{k} wall w{a}{k}" for a in "xy" for k in (0, 1))
+        named += " face z0 wall wz0 pressure 10 face z1 wall wz1 pressure 0"
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW}\n" + dump("box.dump") + "run 20\n")
+        self.liggghts(HEAD + walls + f"fix flow all pfv viscosity 0.01 container {named}\n" +
+                      dump("walls.dump") + "run 0\n")
+        box, container = (forces(read_dump(self.folder / f"{n}.dump")[0]) for n in ("box", "walls"))
+        self.assertLess(largest_difference(box, container), 1e-13)
+
+    def test_a_leaning_mesh_and_planes_by_point_and_normal(self):
+        lean = 0.02
+        write_plate(self.folder / "lid.stl", [(-0.1, -0.1, EDGE + lean + 0.1 * lean / EDGE),
+                                              (0.2, -0.1, EDGE + lean - 0.2 * lean / EDGE),
+                                              (0.2, 0.2, EDGE + lean - 0.2 * lean / EDGE),
+                                              (-0.1, 0.2, EDGE + lean + 0.1 * lean / EDGE)])
+        lid = "fix lid all mesh/surface file lid.stl type 1\n" + f"fix lw all {MODEL} mesh n_meshes 1 meshes lid\n"
+        sides = (f"face x0 plane 0 0 0 1 0 0 face x1 plane {EDGE} 0 0 -1 0 0 face y0 plane 0 0 0 0 1 0 "
+                 f"face y1 plane 0 {EDGE} 0 0 -1 0 face floor plane 0 0 0 0 0 1 pressure 10 ")
+        self.liggghts(HEAD + lid + f"fix flow all pfv viscosity 0.01 container {sides} face lid mesh lid pressure 0\n" +
+                      dump("walls.dump") + "run 0\n")
+        slope = lean / EDGE
+        static = self.static({"planes": [
+            {"name": "x0", "inward_normal": [1, 0, 0], "offset": 0},
+            {"name": "x1", "inward_normal": [-1, 0, 0], "offset": -EDGE},
+            {"name": "y0", "inward_normal": [0, 1, 0], "offset": 0},
+            {"name": "y1", "inward_normal": [0, -1, 0], "offset": -EDGE},
+            {"name": "floor", "inward_normal": [0, 0, 1], "offset": 0},
+            {"name": "lid", "inward_normal": [-slope, 0, -1], "offset": -(EDGE + lean)}]},
+            "--face", "floor:pressure=10", "--face", "lid:pressure=0")
+        coupled = forces(read_dump(self.folder / "walls.dump")[0])
+        self.assertLess(largest_difference(coupled, static), 1e-9)
+
+    def test_a_plate_that_sinks_and_tilts_expels_what_the_volume_loses(self):
+        write_plate(self.folder / "lid.stl", [(-0.05, -0.05, EDGE), (0.15, -0.05, EDGE), (0.15, 0.15, EDGE),
+                                              (-0.05, 0.15, EDGE)])
+        lid = ("fix lid all mesh/surface file lid.stl type 1\n"
+               f"fix lw all {MODEL} mesh n_meshes 1 meshes lid\n"
+               "fix down all move/mesh mesh lid linear 0. 0. -0.001\n"
+               f"fix turn all move/mesh mesh lid rotate origin {MIDDLE} {MIDDLE} {EDGE} axis 0. 1. 0. period 60.\n")
+        sides = (f"face x0 plane 0 0 0 1 0 0 face x1 plane {EDGE} 0 0 -1 0 0 face y0 plane 0 0 0 0 1 0 "
+                 f"face y1 plane 0 {EDGE} 0 0 -1 0 face floor plane 0 0 0 0 0 1 pressure 0 ")
+        for every in (1, 5):
+            self.liggghts(FROZEN + lid + f"fix flow all pfv viscosity 0.01 container {sides} face lid mesh lid "
+                          f"couple_every {every}\n" + THERMO + "run 20\n")
+            last = read_thermo((self.folder / "log.liggghts").read_text())[-1]
+            # turning about its middle it moves as much fluid in as out, but for what it has tilted
+            self.assertAlmostEqual(last["flow[2]"] / (0.001 * EDGE**2), 1.0, places=4)
+            self.assertLess(abs(last["flow[3]"]), 1e-11)
+
+    def test_runs_on_two_ranks_and_goes_on_after_a_restart(self):
+        write_data(self.folder, in_pipe(packing(8)))
+        head = HEAD + PIPE + f"fix flow all pfv {IN_PIPE} couple_every 1\n"
+        self.liggghts(head + "run 10\nwrite_restart file.restart\n" + dump("whole.dump") + "run 10\n")
+        self.liggghts(restarted_head() + PIPE + f"fix flow all pfv {IN_PIPE} couple_every 1\n" +
+                      dump("parts.dump") + "run 10\n")
+        whole, parts = (read_dump(self.folder / f"{n}.dump")[20] for n in ("whole", "parts"))
+        self.assertEqual(whole, parts)
+        for ranks in (1, 2):
+            self.liggghts(head + dump(f"{ranks}.dump") + "run 20\n", ranks=ranks)
+        one, two = (forces(read_dump(self.folder / f"{ranks}.dump")[20]) for ranks in (1, 2))
+        self.assertLess(largest_difference(one, two), 1e-9)
+
+    def test_what_is_no_container_is_refused(self):
+        bottom = "face bottom wall floor pressure 10"
+        pipe = HEAD + PIPE
+        self.refused(pipe + f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom}\nrun 0\n",
+                     "container", "2 faces")
+        self.refused(pipe + f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom} "
+                     "face side plane 0 0 0.1 0 0 -1\nrun 0\n", "side", "twice")
+        self.refused(pipe + f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom} "
+                     "face top plane 0 0 0.1 0.2 0 -1\nrun 0\n", "top", "not square")
+        self.refused(pipe + "fix flow all pfv viscosity 0.01 " + faces(xlo="wall shell") + "\nrun 0\n",
+                     "cylinder", "container")
+        self.refused(HEAD + f"fix flow all pfv viscosity 0.01 {faces()} container\nrun 0\n", "before the faces")
+        write_plate(self.folder / "bent.stl", [(0, 0, EDGE), (0.1, 0, EDGE + 0.02), (0.1, 0.1, EDGE), (0, 0.1, EDGE)])
+        self.refused(pipe + "fix bent all mesh/surface file bent.stl type 1\n"
+                     f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom} face top mesh bent\n"
+                     "run 0\n", "bent", "not a plane")
+
+
+if __name__ == "__main__":
+    unittest.main()

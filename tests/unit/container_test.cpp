@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Planes at any angle and cylinders: what a container holds is what its pores hold, and a box is one of them.
+#include "pfv/container.hpp"
+#include "pfv/flow.hpp"
+#include "physics/cell_volumes.hpp"
+#include "problem/container_geometry.hpp"
+#include "support/boxes.hpp"
+#include "support/containers.hpp"
+#include "support/motions.hpp"
+
+#include <gtest/gtest.h>
+#include <utility>
+
+namespace {
+
+using namespace support;
+
+struct Case {
+  std::string name;
+  pfv::Container container;
+};
+
+std::vector<Case> polyhedra() {
+  return {{"prism of 5", frustum(5, 0.0)},   {"prism of 8", frustum(8, 0.0)},  {"prism of 16", frustum(16, 0.0)},
+          {"hopper", frustum(6, 0.35)},      {"tent", frustum(4, -0.3)},       {"pyramid", pyramid()},
+          {"wedge", wedge()},                {"turned cube", turned_cube(some_turn())}};
+}
+std::vector<Case> cylinders() {
+  return {{"upright", cylinder({0, 0, 1}, {0, 0, 0}, 0.5, 1.0)},
+          {"along x", cylinder({1, 0, 0}, {-3, 2, 1}, 0.5, 1.5)},
+          {"oblique", cylinder({1, -2, 0.7}, {10, 20, 30}, 0.7, 1.1)}};
+}
+std::vector<Case> all_containers() {
+  std::vector<Case> all = polyhedra();
+  for (Case& one : cylinders()) all.push_back(std::move(one));
+  return all;
+}
+
+double sum(const std::vector<double>& values) {
+  double total = 0.0;
+  for (const double value : values) total += value;
+  return total;
+}
+
+/// Pressure 1 on one face, 0 on another, the rest walls of one type.
+pfv::Container driven(pfv::Container container, const std::string& from, const std::string& to,
+                      pfv::Wall wall = pfv::Wall::no_slip) {
+  for (pfv::ContainerFace& face : container.faces) face.wall = wall;
+  container.faces[*container.face_named(from)].boundary = pfv::Boundary::pressure(1.0);
+  container.faces[*container.face_named(to)].boundary = pfv::Boundary::pressure(0.0);
+  return container;
+}
+
+}  // namespace
+
+TEST(Containers, PoresAddUpToTheVolumeAndBasesToTheFaces) {
+  for (const Case& one : all_containers()) {
+    Random random(3);
+    const pfv::PackingArrays packing = spheres_in(one.container, 150, 0.08, random);
+    const Stages s = stages_of(packing, one.container);
+    const double volume = pfv::volume_of(one.container);
+    double cells = 0.0;
+    for (const auto& cell : s.network.cell_vertices) cells += pfv::cell_volume(cell, s.spheres).volume;
+    EXPECT_NEAR(cells / volume, 1.0, 1e-12) << one.name;
+    EXPECT_NEAR(sum(s.throats.pore_volume) / volume, 1.0, 1e-12) << one.name;
+    const pfv::ContainerGeometry geometry = pfv::geometry_of(one.container, one.container.lower);
+    const pfv::Bases bases = bases_of(s);
+    pfv::Matrix6Xd loads = pfv::Matrix6Xd::Zero(6, one.container.face_count());
+    std::vector<double> areas(one.container.faces.size(), 0.0);
+    for (int b = 0; b < bases.size(); ++b) {
+      loads.col(bases.face[b]) += bases.load(b);
+      areas[bases.face[b]] += bases.area[b];
+    }
+    for (std::size_t f = 0; f < areas.size(); ++f)
+      EXPECT_NEAR(areas[f] / geometry.areas[f], 1.0, 1e-11) << one.name << " " << one.container.faces[f].name;
+    EXPECT_LT((loads - geometry.loads).cwiseAbs().maxCoeff(), 1e-11) << one.name;
+    EXPECT_LT(geometry.loads.topRows<3>().rowwise().sum().norm(), 1e-14) << one.name;
+  }
+}
+
+TEST(Containers, ForcesAndFluxesBalance) {
+  for (const Case& one : all_containers()) {
+    Random random(4);
+    const pfv::PackingArrays packing = spheres_in(one.container, 200, 0.07, random);
+    const int last = one.container.face_count() - 1;
+    const bool round = pfv::cylinder_of(one.container).has_value();
+    pfv::Flow flow(driven(one.container, one.container.faces[0].name, one.container.faces[round ? 1 : last].name),
+                   viscosity_one());
+    flow.evaluate(packing.view());
+    const pfv::Report report = flow.report();
+    EXPECT_GT(report.inflow, 0.0) << one.name;
+    EXPECT_LT(std::abs(report.mass_error), 1e-11) << one.name;
+    EXPECT_LT(report.force_balance_error, 1e-11) << one.name;
+  }
+}
+
+TEST(Containers, ACubeOfSixPlanesIsTheBox) {
+  const pfv::PackingArrays packing = data_packing("packing_100.csv");
+  pfv::Flow box(upward_box(pfv::Wall::no_slip), viscosity_one());
+  const Eigen::Matrix3Xd expected = box.evaluate(packing.view()).total;
+  pfv::Flow planes(driven(turned_cube(Eigen::Matrix3d::Identity()), "zlo", "zhi"), viscosity_one());
+  EXPECT_LT((planes.evaluate(packing.view()).total - expected).cwiseAbs().maxCoeff(),
+            1e-13 * expected.cwiseAbs().maxCoeff());
+  EXPECT_NEAR(*planes.report().permeability / *box.report().permeability, 1.0, 1e-13);
+
+  const Eigen::Matrix3d turn = some_turn();
+  pfv::PackingArrays turned = packing;
+  turned.positions = turn * packing.positions;
+  for (const pfv::Wall wall : {pfv::Wall::no_slip, pfv::Wall::symmetry}) {
+    pfv::Flow upright(upward_box(wall), viscosity_one());
+    pfv::Flow oblique(driven(turned_cube(turn), "zlo", "zhi", wall), viscosity_one());
+    const Eigen::Matrix3Xd one = turn * upright.evaluate(packing.view()).total;
+    const Eigen::Matrix3Xd other = oblique.evaluate(turned.view()).total;
+    EXPECT_LT((one - other).cwiseAbs().maxCoeff(), 1e-10 * one.cwiseAbs().maxCoeff());
+    EXPECT_NEAR(*oblique.report().permeability / *upright.report().permeability, 1.0, 1e-10);
+  }
+}
+
+TEST(Containers, ATurnedCylinderIsTheSameCylinder) {
+  const pfv::PackingArrays packing = data_packing("cyl_equal_packing.csv");
+  const Eigen::Matrix3d turn = some_turn();
+  const Eigen::Vector3d shift(3.0, -5.0, 2.0);
+  pfv::PackingArrays turned = packing;
+  turned.positions = (turn * packing.positions).colwise() + shift;
+  for (const pfv::Wall wall : {pfv::Wall::no_slip, pfv::Wall::symmetry}) {
+    pfv::Flow upright(driven(cylinder({0, 0, 1}, {0, 0, 0}, 0.5, 0.75), "bottom", "top", wall), viscosity_one());
+    pfv::Flow oblique(driven(cylinder(turn.col(2), shift, 0.5, 0.75), "bottom", "top", wall), viscosity_one());
+    const Eigen::Matrix3Xd one = turn * upright.evaluate(packing.view()).total;
+    const Eigen::Matrix3Xd other = oblique.evaluate(turned.view()).total;
+    EXPECT_LT((one - other).cwiseAbs().maxCoeff(), 1e-10 * one.cwiseAbs().maxCoeff());
+    EXPECT_NEAR(*oblique.report().permeability / *upright.report().permeability, 1.0, 1e-10);
+  }
+}
+
+// What all share: a translation moves no fluid in any pore, and a uniform expansion opens each by its volume.
+TEST(Containers, RatesOfTranslationAndExpansionAreExactPoreByPore) {
+  for (const Case& one : all_containers()) {
+    Random random(5);
+    const pfv::PackingArrays packing = spheres_in(one.container, 120, 0.06, random);
+    pfv::Container moved = one.container;
+    for (pfv::ContainerFace& face : moved.faces) {
+      face.wall = pfv::Wall::symmetry;
+      face.velocity = {0.3, -0.7, 1.1};
+    }
+    const Stages s = stages_of(packing, moved);
+    const Eigen::Map<const Eigen::VectorXd> volumes(s.throats.pore_volume.data(), s.network.pores());
+    const Eigen::Vector3d shift(0.3, -0.7, 1.1);
+    const Eigen::VectorXd still =
+        reciprocal_rates(s, motion_of(shift.replicate(1, s.spheres.size()), moved));
+    EXPECT_LT(still.cwiseAbs().maxCoeff(), 1e-12 * volumes.mean()) << one.name;
+    if (pfv::cylinder_of(one.container)) continue;  // no rigid motion widens a cylinder
+    for (pfv::ContainerFace& face : moved.faces)
+      face.velocity = (face.surface.offset - face.surface.normal.dot(moved.lower)) * face.surface.normal;
+    const Eigen::VectorXd grown = reciprocal_rates(s, motion_of(s.spheres.centres, moved));
+    EXPECT_LT((grown - 3.0 * volumes).cwiseAbs().maxCoeff(), 1e-11 * volumes.maxCoeff()) << one.name;
+  }
+}
+
+TEST(Containers, MovingTiltingAndTurningFacesSweepWhatTheVolumeChangesBy) {
+  for (const Case& one : all_containers()) {
+    Random random(6);
+    const pfv::PackingArrays packing = spheres_in(one.container, 120, 0.06, random);
+    for (int f = 0; f < one.container.face_count(); ++f) {
+      const bool round = pfv::cylinder_of(one.container).has_value();
+      pfv::Container moved = one.container;
+      pfv::ContainerFace& face = moved.faces[f];
+      if (face.surface.is_plane()) face.velocity = 0.4 * face.surface.normal;
+      if (!round) {
+        face.angular_velocity = {0.2, -0.5, 0.3};
+        face.pivot = 0.5 * (moved.lower + moved.upper);
+      } else {  // about its own axis
+        face.angular_velocity = 2.0 * moved.faces[2].surface.axis;
+        face.pivot = moved.faces[2].surface.point;
+      }
+      const Stages s = stages_of(packing, moved);
+      const Eigen::Matrix3Xd still = Eigen::Matrix3Xd::Zero(3, s.spheres.size());
+      constexpr double h = 1e-5;
+      const double expected = (pfv::geometry_after(moved, h, moved.lower).volume -
+                               pfv::geometry_after(moved, -h, moved.lower).volume) / (2.0 * h);
+      EXPECT_NEAR(reciprocal_rates(s, motion_of(still, moved)).sum(), expected, 1e-9) << one.name << " face " << f;
+    }
+  }
+}
+
+TEST(Containers, ANoSlipShellThatTurnsTakesTheGrainsAlong) {
+  Random random(7);
+  pfv::Container drum = cylinder({0, 1, 0}, {0, 0, 0}, 0.5, 0.8);
+  const pfv::PackingArrays packing = spheres_in(drum, 250, 0.06, random);
+  drum.faces[0].boundary = drum.faces[1].boundary = pfv::Boundary::pressure(0.0);
+  for (const pfv::Wall wall : {pfv::Wall::no_slip, pfv::Wall::symmetry}) {
+    drum.faces[2].wall = wall;
+    drum.faces[2].angular_velocity = Eigen::Vector3d::UnitY();
+    pfv::Flow flow(drum, viscosity_one());
+    const pfv::Forces& forces = flow.evaluate(packing.view());
+    double torque = 0.0;
+    for (Eigen::Index k = 0; k < packing.positions.cols(); ++k)
+      torque += packing.positions.col(k).cross(forces.total.col(k)).y();
+    if (wall == pfv::Wall::no_slip) EXPECT_GT(torque, 1e-6);
+    else EXPECT_NEAR(torque, 0.0, 1e-14);
+    EXPECT_NEAR(flow.report().volume_rate_sum, 0.0, 1e-14);
+  }
+}
+
+TEST(Containers, RandomOnesCloseAndBalance) {
+  Random random(11);
+  for (int number = 0; number < 150; ++number) {
+    const bool round = number % 5 == 0;
+    const pfv::Container container =
+        round ? cylinder(random.in_cube() + Eigen::Vector3d(0.01, 0.0, 0.0), random.in_cube(-5.0, 5.0),
+                         random(0.2, 2.0), random(0.2, 3.0))
+              : random_polyhedron(random);
+    const double size = std::cbrt(pfv::volume_of(container));
+    const int count = round ? 60 + static_cast<int>(random(0.0, 100.0)) : 1 + static_cast<int>(random(0.0, 80.0));
+    const pfv::PackingArrays packing = spheres_in(container, count, 0.12 * size, random);
+    pfv::Container open = driven(container, container.faces[0].name, container.faces[1].name);
+    pfv::Flow flow(open, viscosity_one());
+    try {
+      flow.evaluate(packing.view());
+    } catch (const pfv::Error& error) {
+      EXPECT_TRUE(round) << number << ": " << error.what();
+      continue;
+    }
+    const pfv::Report report = flow.report();
+    EXPECT_LT(report.force_balance_error, 1e-9) << number;
+    EXPECT_LT(std::abs(report.mass_error), 1e-8) << number;
+    const Stages s = stages_of(packing, open);
+    EXPECT_NEAR(sum(s.throats.pore_volume) / pfv::volume_of(container), 1.0, 1e-10) << number;
+    EXPECT_TRUE(flow.forces().total.allFinite()) << number;
+  }
+}
+
+TEST(Containers, WhatCannotHoldFluidIsRefusedByName) {
+  const auto refused = [](std::vector<pfv::ContainerFace> faces, const std::string& what) {
+    try {
+      pfv::check(pfv::container_of(std::move(faces)));
+      ADD_FAILURE() << "accepted: " << what;
+    } catch (const pfv::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  std::vector<pfv::ContainerFace> faces = wedge().faces;
+  auto open = faces;
+  open.erase(open.begin() + 4);
+  refused(open, "open");
+  auto twice = faces;
+  twice[1].name = "x0";
+  refused(twice, "occurs twice");
+  auto idle = faces;
+  idle.push_back(plane_face("far", {1.0, 0.0, 0.0}, {9.0, 0.0, 0.0}));
+  refused(idle, "far");
+  auto inside_out = faces;
+  inside_out[5] = plane_face("top", {0.0, 0.0, -1.0}, {0.0, 0.0, 1.0});
+  refused(inside_out, "turn its normal");
+  refused({plane_face("bottom", {0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}), plane_face("top", {0.1, 0.0, 1.0}, {0.0, 0.0, 1.0}),
+           cylinder_face("shell", {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}, 0.5)}, "not square");
+  const pfv::PackingArrays outside = packing_of({{0.9, 0.4, 0.9, 0.1}});
+  try {
+    pfv::Flow(wedge(), viscosity_one()).evaluate(outside.view());
+    ADD_FAILURE();
+  } catch (const pfv::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("tilted"), std::string::npos) << error.what();
+  }
+}
