@@ -20,8 +20,16 @@ void require_kind(const py::array& array, const char* name, const char* kinds, c
                          wanted);
 }
 
+/// Nothing has to be made of it.
+template <class Number>
+bool is_as_wanted(py::handle given) {
+  return Numbers<Number>::check_(given) &&
+         py::detail::check_flags(given.ptr(), py::detail::npy_api::NPY_ARRAY_ALIGNED_);
+}
+
 template <class Number>
 Numbers<Number> numbers_of(py::handle given, const char* name, const char* kinds, const char* wanted) {
+  if (is_as_wanted<Number>(given)) return py::reinterpret_borrow<Numbers<Number>>(given);
   const py::array array = py::array::ensure(given);
   if (!array) throw py::type_error(std::string(name) + " is no array: give " + wanted);
   require_kind(array, name, kinds, wanted);

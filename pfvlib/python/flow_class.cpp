@@ -54,10 +54,11 @@ Coupling coupling_of(const FlowHost& host, const std::optional<std::string>& nam
 py::array advance(FlowHost& host, const GivenGrains& given, double dt, const std::optional<std::string>& coupling,
                   const GivenDynamics& of_grains, bool commit) {
   const Grains grains(given);
-  const Dynamics dynamics(of_grains, grains.count(), host.box());
+  std::optional<Dynamics> dynamics;
+  if (!of_grains.masses.is_none()) dynamics.emplace(of_grains, grains.count(), host.box());
   Step step;
   step.coupling = coupling_of(host, coupling);
-  step.dynamics = dynamics.get();
+  step.dynamics = dynamics ? &dynamics->get() : nullptr;
   step.commit = commit;
   step.safety = host.settings().steps.safety;
   if (step.coupling != Coupling::explicit_step && !step.dynamics)

@@ -44,8 +44,6 @@ Packing Grains::packing() const {
 }
 
 Dynamics::Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Box& box) {
-  if (given.masses.is_none()) return;
-  has_masses_ = true;
   look_at(dynamics_.masses, each(given.masses, "masses", spheres));
   if (given.other_forces.is_none()) {
     Numbers<double> none(std::vector<py::ssize_t>{spheres, 3});

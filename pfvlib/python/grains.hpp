@@ -42,13 +42,11 @@ class Dynamics {
  public:
   Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Box& box);
 
-  /// Null without masses.
-  const GrainDynamics* get() const { return has_masses_ ? &dynamics_ : nullptr; }
+  const GrainDynamics& get() const { return dynamics_; }
 
  private:
   std::vector<Numbers<double>> kept_;
   GrainDynamics dynamics_;
-  bool has_masses_ = false;
 
   Eigen::Map<const Eigen::Matrix3Xd> rows(py::handle given, const char* name, py::ssize_t spheres);
   Eigen::Map<const Eigen::VectorXd> each(py::handle given, const char* name, py::ssize_t spheres);
