@@ -38,15 +38,15 @@ Numbers<Number> numbers_of(py::handle given, const char* name, const char* kinds
   return numbers;
 }
 
-Numbers<double> reals_of(py::handle given, const char* name) {
-  return numbers_of<double>(given, name, "fiu", "real numbers (float64)");
-}
-
 std::string for_each_sphere(py::ssize_t spheres) {
   return "one for each of the " + std::to_string(spheres) + " spheres";
 }
 
 }  // namespace
+
+Numbers<double> reals_of(py::handle given, const char* name) {
+  return numbers_of<double>(given, name, "fiu", "real numbers (float64)");
+}
 
 Numbers<double> rows_of_three(py::handle given, const char* name) {
   auto rows = reals_of(given, name);

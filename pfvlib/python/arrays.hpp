@@ -24,6 +24,7 @@ using Numbers = py::array_t<Number, py::array::c_style | py::array::forcecast |
 
 /// The array itself where it has these numbers in C order, else a copy. Throws TypeError for what is no array of
 /// real numbers, InputError for another shape; both name the argument.
+Numbers<double> reals_of(py::handle given, const char* name);
 Numbers<double> rows_of_three(py::handle given, const char* name);
 /// With as many rows as there are spheres.
 Numbers<double> rows_of_three(py::handle given, const char* name, py::ssize_t spheres);

@@ -18,8 +18,8 @@ namespace {
 
 /// One for each axis or face: n x 2 numbers, as lower and upper.
 std::vector<std::array<double, 2>> intervals_of(py::handle given, const char* name, py::ssize_t count) {
-  const auto numbers = Numbers<double>::ensure(given);
-  if (!numbers || numbers.ndim() != 2 || numbers.shape(0) != count || numbers.shape(1) != 2)
+  const auto numbers = reals_of(given, name);
+  if (numbers.ndim() != 2 || numbers.shape(0) != count || numbers.shape(1) != 2)
     throw InputError(std::string(name) + ": give " + std::to_string(count) + " intervals [lower, upper], m");
   std::vector<std::array<double, 2>> intervals;
   for (py::ssize_t k = 0; k < count; ++k) intervals.push_back({numbers.at(k, 0), numbers.at(k, 1)});
@@ -245,6 +245,8 @@ With lower = upper it is the pore nearest to that point.)");
   box.def("position", &position_of, "name"_a, "Place of a face on its axis, m.");
   box.def("area", &area_of, "name"_a, "Area of a face, m2.");
   box.def("copy", [](const Box& self) { return self; }, "A box of its own.");
+  box.def("__copy__", [](const Box& self) { return self; });
+  box.def("__deepcopy__", [](const Box& self, py::object) { return self; });
   box.def("__repr__", &text_of);
 }
 

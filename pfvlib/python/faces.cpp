@@ -33,7 +33,8 @@ Piston piston_of(py::handle given) {
 Pistons pistons_of(const Box&, py::handle given) {
   Pistons pistons{};
   if (given.is_none()) return pistons;
-  for (const auto& [name, piston] : py::cast<py::dict>(given)) {
+  if (!py::isinstance<py::dict>(given)) throw py::type_error("pistons: give a dict {face: mass}");
+  for (const auto& [name, piston] : py::reinterpret_borrow<py::dict>(given)) {
     const auto face = static_cast<std::size_t>(named<Face>(name.cast<std::string>()));
     try {
       pistons[face] = piston_of(piston);

@@ -69,7 +69,7 @@ py::array advance(FlowHost& host, const GivenGrains& given, double dt, const std
 }
 
 double limit_of(FlowHost& host, py::handle given, py::handle of_faces) {
-  const auto numbers = one_each(given, "masses", py::len(given));
+  const auto numbers = reals_of(given, "masses");
   const Eigen::VectorXd masses = vector_of(numbers);
   const Pistons pistons = pistons_of(host.box(), of_faces);
   return host.ask([&](FlowModel& model) { return model.time_step_limit(masses, pistons); });
@@ -157,8 +157,7 @@ py::dict state_of(FlowHost& host) {
 
 void restore(FlowHost& host, const py::dict& given) {
   FlowState state;
-  const auto pressures = Numbers<double>::ensure(given["pore_pressures"]);
-  if (!pressures) throw py::type_error("pore_pressures is no array of numbers: give a dict that state() returned");
+  const auto pressures = reals_of(given["pore_pressures"], "pore_pressures");
   state.pore_pressures.assign(pressures.data(), pressures.data() + pressures.size());
   state.time = number_of(given["time"], "time");
   state.strain = number_of(given["strain"], "strain");

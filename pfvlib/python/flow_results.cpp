@@ -17,12 +17,10 @@ using namespace py::literals;
 
 /// 0, 1, 2 or "x", "y", "z".
 int axis_of(py::handle given) {
-  if (!py::isinstance<py::str>(given)) return given.cast<int>();
-  const auto name = given.cast<std::string>();
-  const std::size_t axis = std::string("xyz").find(name);
-  if (name.size() != 1 || axis == std::string::npos)
-    throw InputError("there is no axis '" + name + "': give x, y, z or 0, 1, 2");
-  return static_cast<int>(axis);
+  const std::string name = py::str(given);
+  for (int axis = 0; axis < 3; ++axis)
+    if (name == std::string(1, "xyz"[axis]) || name == std::to_string(axis)) return axis;
+  throw InputError("there is no axis '" + name + "': give x, y, z or 0, 1, 2");
 }
 
 Eigen::VectorXd pressures_of(FlowModel& model) {
@@ -32,8 +30,7 @@ Eigen::VectorXd pressures_of(FlowModel& model) {
 
 /// At one place a number, at several an array.
 py::object pressure_at(FlowHost& host, py::handle given) {
-  const auto places = Numbers<double>::ensure(given);
-  if (places && places.ndim() == 1) {
+  if (reals_of(given, "place").ndim() == 1) {
     const Eigen::Vector3d place = vector_of(given, "place");
     return py::float_(host.ask([&place](FlowModel& model) { return model.pressure_at(place); }));
   }

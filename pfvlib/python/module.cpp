@@ -10,6 +10,8 @@
 PYBIND11_MODULE(_pfv, module) {
   namespace py = pybind11;
   using namespace pfv::python;
+  // users see one module, also in what help() prints
+  module.attr("__name__") = "pfv";
   module.attr("__version__") = pfv::version;
   translate_errors();
   add_box_class(module);
@@ -22,7 +24,5 @@ PYBIND11_MODULE(_pfv, module) {
              "The settings that Flow and permeability take as keywords: a list of dicts with name, group, values, "
              "unit, default, models (that read it), help.");
   module.def("citation", &pfv::citation, "The papers to cite, as text.");
-  // users see one module
-  for (const char* name : {"Box", "Fluid", "Packing", "Network", "Flow"})
-    module.attr(name).attr("__module__") = "pfv";
+  module.attr("__name__") = "pfv._pfv";
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """pfv.Box: conditions by the names of the faces."""
+import copy
 import unittest
 
 import numpy as np
@@ -26,7 +27,7 @@ class Box(unittest.TestCase):
         self.assertEqual((box.volume, box.area("yhi"), box.position("yhi")), (6, 3, 2))
         box.upper = [1, 2, 2.5]
         self.assertEqual(box.position("zhi"), 2.5)
-        other = box.copy()
+        other = copy.deepcopy(box)
         other.lower = (-1, 0, 0)
         self.assertEqual((box.lower[0], other.lower[0]), (0, -1))
         self.assertEqual(repr(box), "pfv.Box([[0, 1], [0, 2], [0, 2.5]])")

@@ -97,6 +97,7 @@ class Errors(unittest.TestCase):
     def test_queries_refuse_bad_places_and_axes(self):
         self.flow.evaluate(self.positions, self.radii)
         for ask in (lambda: self.flow.pressure_at([2, 2, 2]), lambda: self.flow.plane_pressure("w", 0),
+                    lambda: self.flow.plane_pressure(3, 0.5), lambda: self.flow.plane_flux(-1, 0.5),
                     lambda: self.flow.viscosity_matrices([100]), lambda: self.flow.pressure_at([0, 1]),
                     self.flow.cell_porosities):
             with self.assertRaises(pfv.InputError):

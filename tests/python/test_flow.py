@@ -86,7 +86,8 @@ class Answers(unittest.TestCase):
     def test_throat_fluxes_are_conductance_times_fall_of_pressure(self):
         first, second = self.flow.network().throat_pores.T
         fall = self.flow.pressures[first] - self.flow.pressures[second]
-        np.testing.assert_allclose(self.flow.throat_fluxes(), self.flow.throat_conductances() * fall, rtol=0, atol=1e-15)
+        expected = self.flow.throat_conductances() * fall
+        np.testing.assert_allclose(self.flow.throat_fluxes(), expected, rtol=0, atol=1e-15)
 
     def test_centres_are_places_in_the_box(self):
         bed = grains()

@@ -17,7 +17,8 @@ print(*sorted(set(sys.modules) - before))
 
 class Import(unittest.TestCase):
     def test_it_prints_nothing_and_imports_nothing_else(self):
-        done = subprocess.run([sys.executable, "-W", "error", "-c", PROGRAM], capture_output=True, text=True, check=True)
+        done = subprocess.run([sys.executable, "-W", "error", "-c", PROGRAM], capture_output=True, text=True,
+                              check=True)
         self.assertEqual(done.stderr, "")
         self.assertEqual(set(done.stdout.split()), {"pfv", "pfv._errors", "pfv._pfv"})
 

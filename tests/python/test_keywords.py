@@ -12,7 +12,8 @@ from case import UNIT, grains, through_flow
 
 class Keywords(unittest.TestCase):
     def test_they_are_those_of_the_commands_page(self):
-        page = subprocess.run([os.environ["PFV_COMMAND"], "settings"], check=True, stdout=subprocess.PIPE, text=True).stdout
+        page = subprocess.run([os.environ["PFV_COMMAND"], "settings"], check=True, stdout=subprocess.PIPE,
+                              text=True).stdout
         rows = [[cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
                 for line in page.splitlines() if line.startswith("| ") and not line.startswith("| setting ")]
         of_page = {row[0]: (row[2], row[3], row[8].replace("\\|", "|")) for row in rows if row[6]}

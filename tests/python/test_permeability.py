@@ -31,7 +31,8 @@ class Permeability(CommandCase):
                                           conductance="hydraulic_radius"), along_x)
         periodic = self.of_command("bed_periodic_60.csv", "--periodic", "x,y,z", "--gradient", "0", "0", "-1")
         bed = grains("bed_periodic_60.csv")
-        self.assertEqual(pfv.permeability(bed.positions, bed.radii, UNIT, periodic="xyz", viscosity=VISCOSITY), periodic)
+        self.assertEqual(pfv.permeability(bed.positions, bed.radii, UNIT, periodic="xyz", viscosity=VISCOSITY),
+                         periodic)
 
     def test_lists_are_taken_too(self):
         bed = grains()
