@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// pfv.Box and pfv.Fluid
+// pfv.Box
 #include "arrays.hpp"
 #include "classes.hpp"
 #include "faces.hpp"
@@ -146,20 +146,6 @@ py::dict faces_of(Box& box) {
   return faces;
 }
 
-Box make_box(py::handle bounds, const std::string& wall, py::handle periodic, py::handle gradient) {
-  Box box;
-  const auto intervals = intervals_of(bounds, "box", 3);
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = intervals[static_cast<std::size_t>(axis)][0];
-    box.upper[axis] = intervals[static_cast<std::size_t>(axis)][1];
-  }
-  box.periodic = periodic_of(periodic);
-  box.pressure_gradient = vector_of(gradient, "gradient");
-  for (const std::string& name : face_names(box)) condition_of(box, name).wall = named<Wall>(wall);
-  check(box);
-  return box;
-}
-
 void add_patch(Box& box, const std::string& name, py::handle rectangle, const py::kwargs& keywords) {
   const auto [a, b] = [&] {
     const auto sides = intervals_of(rectangle, "patch", 2);
@@ -167,6 +153,41 @@ void add_patch(Box& box, const std::string& name, py::handle rectangle, const py
   }();
   box.patches.push_back(patch_of(box, name, {a[0], a[1], b[0], b[1]}, required_boundary("patch()", keywords)));
 }
+
+// -------------------------------------------------------------------------------------- classes
+
+const char* const box_text =
+    R"(A flow box: plane walls normal to the axes, m.
+
+    box = pfv.Box([[0, 1], [0, 1], [0, 2]], wall="symmetry")
+    box.face("zlo", pressure=5.0).face("zhi", pressure=0.0, velocity=-0.01)
+
+bounds: [[xlo, xhi], [ylo, yhi], [zlo, zhi]], m
+wall: "no_slip" or "symmetry", of all sealed faces
+periodic: axes along which the packing repeats, "xy" for instance; their faces do not exist
+gradient: macroscopic pressure gradient along periodic axes, Pa/m, 3 numbers; fluid flows against it
+
+Faces are xlo, xhi, ylo, yhi, zlo, zhi; one that is not named is sealed and at rest. A Flow takes a copy: hand a
+changed box to `Flow.set_box`. Raises InputError for bounds that are flat, inverted or not finite.)";
+
+const char* const face_text =
+    R"(Sets what is named of a face and returns the box.
+
+pressure: Pa, a number or a function of (place, time): 3 numbers (m), s. It is called for each pore of the face
+    at each solve, with the interpreter's lock
+flux: m3/s, positive into the box
+sealed: True
+wall: "no_slip" or "symmetry"
+velocity: m/s along the face's axis, positive along +axis
+sliding: m/s, 3 numbers in the face's plane; spin: rad/s about its axis; pivot: a point of that axis, m
+
+Raises InputError for an unknown face, TypeError for an unknown keyword.)";
+
+const char* const patch_text =
+    R"(Adds a rectangle with a boundary of its own to a face and returns the box.
+
+rectangle: [[a0, a1], [b0, b1]], m, along the two other axes in the order x, y, z
+one of pressure, flux, sealed: as for a face. Where patches overlap, the later one wins.)";
 
 std::string text_of(const Box& box) {
   std::ostringstream text;
@@ -179,50 +200,16 @@ std::string text_of(const Box& box) {
   return text.str();
 }
 
-}  // namespace
-
-Box box_of(py::handle given) {
-  if (py::isinstance<Box>(given)) return given.cast<Box>();
-  return make_box(given, name_of(Wall::no_slip), py::str(""), py::make_tuple(0.0, 0.0, 0.0));
-}
-
-void add_box_class(py::module_& module) {
+void add_conditions(py::class_<Box>& box) {
   using namespace py::literals;
-  py::class_<Box> box(module, "Box", R"(A flow box: plane walls normal to the axes, m.
-
-    box = pfv.Box([[0, 1], [0, 1], [0, 2]], wall="symmetry")
-    box.face("zlo", pressure=5.0).face("zhi", pressure=0.0, velocity=-0.01)
-
-bounds: [[xlo, xhi], [ylo, yhi], [zlo, zhi]], m
-wall: "no_slip" or "symmetry", of all sealed faces
-periodic: axes along which the packing repeats, "xy" for instance; their faces do not exist
-gradient: macroscopic pressure gradient along periodic axes, Pa/m, 3 numbers; fluid flows against it
-
-Faces are xlo, xhi, ylo, yhi, zlo, zhi; one that is not named is sealed and at rest. A Flow takes a copy: hand a
-changed box to `Flow.set_box`. Raises InputError for bounds that are flat, inverted or not finite.)");
-  box.def(py::init(&make_box), "bounds"_a, py::kw_only(), "wall"_a = "no_slip", "periodic"_a = "",
-          "gradient"_a = py::make_tuple(0.0, 0.0, 0.0));
   box.def("face", [](py::object self, const std::string& name, const py::kwargs& keywords) {
             set_face(self.cast<Box&>(), name, keywords);
             return self;
-          }, "name"_a, R"(Sets what is named of a face and returns the box.
-
-pressure: Pa, a number or a function of (place, time): 3 numbers (m), s. It is called for each pore of the face
-    at each solve, with the interpreter's lock
-flux: m3/s, positive into the box
-sealed: True
-wall: "no_slip" or "symmetry"
-velocity: m/s along the face's axis, positive along +axis
-sliding: m/s, 3 numbers in the face's plane; spin: rad/s about its axis; pivot: a point of that axis, m
-
-Raises InputError for an unknown face, TypeError for an unknown keyword.)");
+          }, "name"_a, face_text);
   box.def("patch", [](py::object self, const std::string& name, py::object rectangle, const py::kwargs& keywords) {
             add_patch(self.cast<Box&>(), name, rectangle, keywords);
             return self;
-          }, "name"_a, "rectangle"_a, R"(Adds a rectangle with a boundary of its own to a face and returns the box.
-
-rectangle: [[a0, a1], [b0, b1]], m, along the two other axes in the order x, y, z
-one of pressure, flux, sealed: as for a face. Where patches overlap, the later one wins.)");
+          }, "name"_a, "rectangle"_a, patch_text);
   box.def("region", [](py::object self, py::object lower, py::object upper, const py::kwargs& keywords) {
             self.cast<Box&>().regions.push_back({vector_of(lower, "lower"), vector_of(upper, "upper"),
                                                  required_boundary("region()", keywords)});
@@ -230,6 +217,10 @@ one of pressure, flux, sealed: as for a face. Where patches overlap, the later o
           }, "lower"_a, "upper"_a, R"(Gives the pores between two corners (m) a pressure or a flux; returns the box.
 
 With lower = upper it is the pore nearest to that point.)");
+}
+
+void add_measures(py::class_<Box>& box) {
+  using namespace py::literals;
   box.def_property("lower", [](const Box& self) { return array_of(self.lower); },
                    [](Box& self, py::object corner) { self.lower = vector_of(corner, "lower"); },
                    "Lower corner, m: a copy; assign to move it.");
@@ -250,31 +241,34 @@ With lower = upper it is the pore nearest to that point.)");
   box.def("__repr__", &text_of);
 }
 
-void add_fluid_class(py::module_& module) {
-  const std::string doc =
-      "The fluid in the pores; a value that does not change.\n\n"
-      "    pfv.Fluid(viscosity=1e-3, gravity=(0, 0, -9.81))\n" + help_of(fluid_keywords()) +
-      "\n\nPressures are the piezometric excess, p = p_abs - density gravity . x. Raises InputError for a value out "
-      "of range.";
-  py::class_<Fluid> fluid(module, "Fluid", doc.c_str());
-  fluid.def(py::init([](const py::kwargs& keywords) {
-    Settings settings;
-    read_keywords("Fluid()", keywords, fluid_keywords(), settings);
-    check(settings.fluid);
-    return settings.fluid;
-  }));
-  fluid.def_readonly("viscosity", &Fluid::viscosity, "Pa s");
-  fluid.def_readonly("density", &Fluid::density, "kg/m3");
-  fluid.def_property_readonly("gravity", [](const Fluid& self) { return array_of(self.gravity); }, "m/s2, 3 numbers");
-  fluid.def_readonly("bulk_modulus", &Fluid::bulk_modulus, "Pa; None: incompressible");
-  fluid.def("__repr__", [](const Fluid& self) {
-    Settings settings;
-    settings.fluid = self;
-    std::string text;
-    for (const std::string& name : fluid_keywords())
-      text += (text.empty() ? "" : ", ") + name + "=" + setting_named(name)->text(settings);
-    return "pfv.Fluid(" + text + ")";
-  });
+}  // namespace
+
+Box make_box(py::handle bounds, const std::string& wall, py::handle periodic, py::handle gradient) {
+  Box box;
+  const auto intervals = intervals_of(bounds, "box", 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = intervals[static_cast<std::size_t>(axis)][0];
+    box.upper[axis] = intervals[static_cast<std::size_t>(axis)][1];
+  }
+  box.periodic = periodic_of(periodic);
+  box.pressure_gradient = vector_of(gradient, "gradient");
+  for (const std::string& name : face_names(box)) condition_of(box, name).wall = named<Wall>(wall);
+  check(box);
+  return box;
+}
+
+Box box_of(py::handle given) {
+  if (py::isinstance<Box>(given)) return given.cast<Box>();
+  return make_box(given, name_of(Wall::no_slip), py::str(""), py::make_tuple(0.0, 0.0, 0.0));
+}
+
+void add_box_class(py::module_& module) {
+  using namespace py::literals;
+  py::class_<Box> box(module, "Box", box_text);
+  box.def(py::init(&make_box), "bounds"_a, py::kw_only(), "wall"_a = "no_slip", "periodic"_a = "",
+          "gradient"_a = py::make_tuple(0.0, 0.0, 0.0));
+  add_conditions(box);
+  add_measures(box);
 }
 
 }  // namespace pfv::python

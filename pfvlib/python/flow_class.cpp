@@ -75,20 +75,8 @@ double limit_of(FlowHost& host, py::handle given, py::handle of_faces) {
   return host.ask([&](FlowModel& model) { return model.time_step_limit(masses, pistons); });
 }
 
-void add_steps(py::class_<FlowHost>& flow) {
-  flow.def("advance",
-           [](FlowHost& host, py::object positions, py::object radii, py::object velocities, double dt,
-              const std::optional<std::string>& coupling, py::object masses, py::object other_forces,
-              py::object pistons, py::object angular_velocities, py::object other_torques, py::object inertias,
-              py::object ids, py::object displaced_volumes, bool commit) {
-             return advance(host, {positions, radii, velocities, angular_velocities, ids, displaced_volumes}, dt,
-                            coupling, {masses, other_forces, other_torques, inertias, pistons}, commit);
-           },
-           "positions"_a, "radii"_a, "velocities"_a = py::none(), "dt"_a, "coupling"_a = py::none(), py::kw_only(),
-           "masses"_a = py::none(), "other_forces"_a = py::none(), "pistons"_a = py::none(),
-           "angular_velocities"_a = py::none(), "other_torques"_a = py::none(), "inertias"_a = py::none(),
-           "ids"_a = py::none(), "displaced_volumes"_a = py::none(), "commit"_a = true,
-           R"(Advances the fluid by a step and returns the forces on the spheres: N x 3, N.
+const char* const advance_text =
+    R"(Advances the fluid by a step and returns the forces on the spheres: N x 3, N.
 
 positions: N x 3, m; radii: N, m; velocities: N x 3, m/s (None: at rest)
 dt: s, > 0
@@ -106,7 +94,35 @@ An explicit step ends where the grains are at `positions` and is stable below `t
 implicit ones the velocities are those from which the host applies the forces over dt (leapfrog).
 The array that is returned stays as it is after further steps and when the flow is gone.
 Cost: one solve on the kept factor; a new network where the grains have moved enough. Raises InputError (with the
-ids of the spheres), SolverError; afterwards the flow holds no result until the next successful call.)");
+ids of the spheres), SolverError; afterwards the flow holds no result until the next successful call.)";
+
+const char* const evaluate_text =
+    R"(The forces (N x 3, N) without advancing anything: a steady state, or a look at one. As `advance`.
+
+dt: s; 0, unless the fluid is compressible)";
+
+const char* const limit_text =
+    R"(Limit of the explicit coupling of the last packing, s; inf where nothing resists.
+
+masses: N, kg; pistons: as for `advance`. Cost: some 20 to 40 solves for a new network.)";
+
+void add_steps(py::class_<FlowHost>& flow) {
+  flow.def("advance",
+           [](FlowHost& host, py::object positions, py::object radii, py::object velocities, double dt,
+              const std::optional<std::string>& coupling, py::object masses, py::object other_forces,
+              py::object pistons, py::object angular_velocities, py::object other_torques, py::object inertias,
+              py::object ids, py::object displaced_volumes, bool commit) {
+             return advance(host, {positions, radii, velocities, angular_velocities, ids, displaced_volumes}, dt,
+                            coupling, {masses, other_forces, other_torques, inertias, pistons}, commit);
+           },
+           "positions"_a, "radii"_a, "velocities"_a = py::none(), "dt"_a, "coupling"_a = py::none(), py::kw_only(),
+           "masses"_a = py::none(), "other_forces"_a = py::none(), "pistons"_a = py::none(),
+           "angular_velocities"_a = py::none(), "other_torques"_a = py::none(), "inertias"_a = py::none(),
+           "ids"_a = py::none(), "displaced_volumes"_a = py::none(), "commit"_a = true,
+           advance_text);
+}
+
+void add_evaluations(py::class_<FlowHost>& flow) {
   flow.def("evaluate",
            [](FlowHost& host, py::object positions, py::object radii, py::object velocities, double dt,
               py::object angular_velocities, py::object ids, py::object displaced_volumes) {
@@ -115,13 +131,9 @@ ids of the spheres), SolverError; afterwards the flow holds no result until the 
            },
            "positions"_a, "radii"_a, "velocities"_a = py::none(), "dt"_a = 0.0, py::kw_only(),
            "angular_velocities"_a = py::none(), "ids"_a = py::none(), "displaced_volumes"_a = py::none(),
-           R"(The forces (N x 3, N) without advancing anything: a steady state, or a look at one. As `advance`.
-
-dt: s; 0, unless the fluid is compressible)");
+           evaluate_text);
   flow.def("time_step_limit", &limit_of, "masses"_a, "pistons"_a = py::none(),
-           R"(Limit of the explicit coupling of the last packing, s; inf where nothing resists.
-
-masses: N, kg; pistons: as for `advance`. Cost: some 20 to 40 solves for a new network.)");
+           limit_text);
   flow.def("rebuild", [](FlowHost& host) { host.run([](FlowModel& model) { model.rebuild(); }); },
            "Discards the network; the next step triangulates anew.");
   flow.def("set_box", [](FlowHost& host, py::object given) {
@@ -190,10 +202,8 @@ exact union of the spheres.)");
            }, "path"_a, "The report as a JSON file, as `pfv solve --report` writes it. Raises FileError.");
 }
 
-}  // namespace
-
-void add_flow_class(py::module_& module) {
-  const std::string doc = R"(Flow through the pores of a packing that may move: grains in, forces out.
+std::string class_text() {
+  return R"(Flow through the pores of a packing that may move: grains in, forces out.
 
     flow = pfv.Flow(box, pfv.Fluid(viscosity=1e-3), solver="cholmod")
     forces = flow.advance(positions, radii, velocities, dt)
@@ -208,11 +218,17 @@ serves one thread at a time (InputError otherwise). The arrays of a step must no
 Keywords, those of the table doc/settings.md; True and False stand for yes and no:
 )" + help_of(all_keywords()) +
                           "\n\nRaises TypeError for an unknown keyword, InputError for bad or contradictory values.";
-  py::class_<FlowHost> flow(module, "Flow", doc.c_str());
+}
+
+}  // namespace
+
+void add_flow_class(py::module_& module) {
+  py::class_<FlowHost> flow(module, "Flow", class_text().c_str());
   flow.def(py::init([](py::object box, const Fluid* fluid, const py::kwargs& keywords) {
              return make_host(box, fluid, keywords);
            }), "box"_a, "fluid"_a = py::none());
   add_steps(flow);
+  add_evaluations(flow);
   add_forces(flow);
   add_state(flow);
   add_results(flow);

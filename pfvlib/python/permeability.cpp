@@ -16,8 +16,7 @@ using namespace py::literals;
 Box sample(py::handle bounds, const std::string& axis, const std::string& periodic) {
   if (axis != "x" && axis != "y" && axis != "z")
     throw InputError("there is no axis '" + axis + "': give x, y or z");
-  py::object box_class = py::type::of<Box>();
-  Box box = box_class(bounds, "wall"_a = name_of(Wall::symmetry), "periodic"_a = periodic).cast<Box>();
+  Box box = make_box(bounds, name_of(Wall::symmetry), py::str(periodic), py::make_tuple(0.0, 0.0, 0.0));
   const int along = axis[0] - 'x';
   if (box.periodic[static_cast<std::size_t>(along)]) {
     box.pressure_gradient[along] = -1.0 / (box.upper[along] - box.lower[along]);

@@ -31,3 +31,4 @@ class AccuracyWarning(UserWarning):
 
 for _class in (Error, InputError, SolverError, FileError, AccuracyWarning):
     _class.__module__ = "pfv"
+del _class
