@@ -57,7 +57,8 @@ void write_row(const Setting& setting, std::ostream& out) {
   const std::string unit = setting.unit;
   const std::string option = setting.hosts.command ? "`" + option_of(setting) + "`" : "";
   out << "| " << setting.name << " | " << cell(setting.values) << " | " << unit << " | "
-      << setting.text(Settings{}) << " | " << in_fix(setting) << " | " << option << " | " << readers_of(setting)
+      << setting.text(Settings{}) << " | " << in_fix(setting) << " | " << option << " | "
+      << (setting.hosts.python ? setting.name : "") << " | " << readers_of(setting)
       << " | " << cell(setting.help) << " |\n";
 }
 
@@ -65,16 +66,16 @@ void write_row(const Setting& setting, std::ostream& out) {
 
 void write_settings(std::ostream& out) {
   out << "# Settings\n\n"
-         "What a flow can be told besides its box and its files, as [fix pfv](fix_pfv.md) and the\n"
-         "[command](user_guide.md) write it. `pfv settings` prints this page. A setting that the model or the solver\n"
+         "What a flow can be told besides its box and its files, as [fix pfv](fix_pfv.md), the\n"
+         "[command](user_guide.md) and the [Python module](python.md) write it. `pfv settings` prints this page. A setting that the model or the solver\n"
          "does not read is refused, also at its default value.\n";
   std::string group;
   for (const Setting& setting : all_settings()) {
     if (group != setting.group) {
       group = setting.group;
       out << "\n## " << group << "\n\n"
-          << "| setting | value | unit | default | fix pfv | pfv solve | read by | what |\n"
-          << "|---|---|---|---|---|---|---|---|\n";
+          << "| setting | value | unit | default | fix pfv | pfv solve | Python | read by | what |\n"
+          << "|---|---|---|---|---|---|---|---|---|\n";
     }
     write_row(setting, out);
   }

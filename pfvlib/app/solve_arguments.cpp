@@ -49,13 +49,13 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
                      "spheres (m, m/s): CSV with header id,x,y,z,radius[,vx,vy,vz],\n"
                      "or a LIGGGHTS dump, of which the last snapshot is taken")
       ->required()->option_text("FILE (required)")->group(group);
-  command.add_option("--box", arguments.box, "flow box, m; or")
+  command.add_option("--box", arguments.box, "flow box, m (required, or --container)")
       ->type_size(6)->expected(1)->option_text("XLO XHI YLO YHI ZLO ZHI")->group(group);
   command.add_option("--container", arguments.container,
                      "planes at any angle, or a cylinder between two (doc/container.md):\n"
                      "{\"planes\": [{\"name\", \"inward_normal\": [x,y,z], \"offset\"}, ...],\n"
                      " \"cylinders\": [{\"name\", \"axis\", \"point\", \"radius\"}]}\n"
-                     "one of --box and --container is required")
+                     "(default: none)")
       ->option_text("FILE.json")->group(group);
   repeatable(command.add_option("--face", arguments.faces,
                      "condition on a face, may be given several times\n"
@@ -121,7 +121,7 @@ Box box_of(const SolveArguments& arguments) {
 Container container_of(const SolveArguments& arguments) {
   if (arguments.container.has_value() == !arguments.box.empty())
     throw InputError(arguments.container ? "--box and --container exclude each other: give one of them"
-                                         : "--box: it is missing: give the flow box, or a --container");
+                                         : "--box or --container is required: see pfv solve --help");
   if (arguments.container && (!arguments.periodic.empty() || !arguments.gradient.empty()))
     throw InputError("--periodic and --gradient need a --box");
   Container container = arguments.container ? read_container(*arguments.container) : Container(box_of(arguments));

@@ -97,11 +97,9 @@ TEST(VolumeRates, SumIsTheRateOfTheBoxForAnyMotionOfTheGrains) {
 pfv::Spheres displaced(pfv::Spheres spheres, pfv::Vertex v, int axis, double by) {
   if (!pfv::is_wall(v)) {
     spheres.centres(axis, v) += by;
-  } else if (pfv::wall_number(v) % 2) {
-    spheres.edges[axis] += by;
-  } else {  // coordinates start at the lower wall
-    spheres.edges[axis] -= by;
-    spheres.centres.row(axis).array() -= by;
+  } else {
+    pfv::Surface& plane = spheres.walls[pfv::wall_number(v)].surface;
+    plane.offset += by * plane.normal[axis];
   }
   return spheres;
 }

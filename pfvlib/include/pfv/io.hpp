@@ -31,6 +31,8 @@ Container read_container(const std::string& path);
 void write_forces(const std::string& path, const Packing& packing, const Forces& forces);
 
 /// The report as JSON, keys as in `Report`; absent values are null.
+std::string json_of(const Report& report);
+/// The same as a file.
 void write_report(const std::string& path, const Report& report);
 
 /// The report as a few lines of text: phases with their times and counts, sizes, balances, which code solved.

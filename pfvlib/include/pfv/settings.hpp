@@ -43,12 +43,13 @@ struct Hosts {
   bool fix = false;       ///< `fix pfv`: a keyword
   bool modify = false;    ///< `fix_modify`
   bool of_grid = false;   ///< `fix pfv`: behind `model darcy_grid NX NY NZ`
+  bool python = true;     ///< the module `pfv`: a keyword
 };
 
 struct SolverAbilities;
 
-/// One row of the table that the command line, the fix, their help and messages and the page
-/// doc/settings.md are made of.
+/// One row of the table that the command line, the fix, the Python module, their help and messages and the
+/// page doc/settings.md are made of.
 struct Setting {
   const char* group;
   const char* name;

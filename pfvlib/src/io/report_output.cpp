@@ -61,10 +61,14 @@ void add_entries(const Part& part, Json& json) {
 
 }  // namespace
 
-void write_report(const std::string& path, const Report& report) {
+std::string json_of(const Report& report) {
   Json json{{"version", version}};
   add_entries(report, json);
-  detail::write_file(path, json.dump(2) + "\n");
+  return json.dump(2) + "\n";
+}
+
+void write_report(const std::string& path, const Report& report) {
+  detail::write_file(path, json_of(report));
 }
 
 }  // namespace pfv

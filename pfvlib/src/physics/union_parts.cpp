@@ -48,7 +48,12 @@ Spheres boxed(const Eigen::Matrix3Xd& centres, const Eigen::VectorXd& radii,
   std::iota(spheres.ids.begin(), spheres.ids.end(), 1);
   spheres.centres = centres(Eigen::all, kept).colwise() - lower;
   spheres.radii = radii(kept);
+  Box box;
+  box.lower = lower;
+  box.upper = upper;
   spheres.edges = upper - lower;
+  spheres.walls = walls_of(box, lower);
+  spheres.volume = spheres.edges.prod();
   return spheres;
 }
 

@@ -138,7 +138,6 @@ void settle(Settings& settings) {
 
 void check(const Settings& settings) {
   for (const Setting& setting : all_settings()) setting.check(settings);
-  name_of(settings.options.outside);
   name_of(settings.options.strain_measure);
   check(settings.options.solver, settings.options.ordering);
   check_readers(settings);

@@ -200,11 +200,14 @@ void read_couple_every(Settings& settings, Words& words) {
                                            : StepSettings{}.couple_error;
 }
 
+/// Of the host that runs the loop over the steps; a program in Python runs its own.
+constexpr Hosts of_loop{false, true, true, false, false};
+
 Setting couple_every() {
   Setting setting = row("Steps", "couple_every",
                         "solve the flow every N time steps, or when the loads have changed by this part of them, "
                         "per cent",
-                        {false, true, true}, any_model);
+                        of_loop, any_model);
   setting.noun = "couple_every";
   setting.values = "auto [error PERCENT]|N";
   setting.read = read_couple_every;
@@ -223,11 +226,11 @@ Setting couple_every() {
 
 // -------------------------------------------------------------------------------------- the table
 
-//                 command fix modify of_grid
+//                 command fix modify of_grid python
 constexpr Hosts command{true, false, false, false}, fix{false, true, false, false},
     both{true, true, false, false}, both_and_modify{true, true, true, false},
     modify_alone{false, false, true, false}, in_model{false, false, false, true},
-    command_and_in_model{true, false, false, true};
+    command_and_in_model{true, false, false, true}, python_alone{false, false, false, false, true};
 
 std::vector<Setting> of_fluid() {
   return {
@@ -314,11 +317,28 @@ std::vector<Setting> of_steps() {
       couple_every(),
       choice(row("Steps", "coupling", "how forces act over a time step", fix, any_model), "coupling",
              step(&StepSettings::coupling)),
-      yes_or_no(row("Steps", "time_step_check", "find the limit of the time step at the setup of a run", fix,
-                    any_model),
+      yes_or_no(row("Steps", "time_step_check", "find the limit of the time step at the setup of a run",
+                    {false, true, false, false, false}, any_model),
                 "check of the time step", step(&StepSettings::time_step_check)),
       number(row("Steps", "safety", "part of the explicit limit that a time step may reach", modify_alone, any_model),
              "safety factor", "ZETA", "", demands::positive, step(&StepSettings::safety)),
+  };
+}
+
+/// What a call answers: the command and the fix know it from what they write.
+std::vector<Setting> of_results() {
+  return {
+      yes_or_no(row("Results", "forces", "find the forces on the grains", python_alone, any_model), "forces",
+                option(&Options::forces)),
+      yes_or_no(row("Results", "split_forces", "the pressure and the viscous part of each force, too", python_alone,
+                    any_model),
+                "split forces", option(&Options::split_forces)),
+      yes_or_no(row("Results", "sphere_pressure", "the mean pressure around each grain, too", python_alone,
+                    any_model),
+                "sphere pressure", option(&Options::sphere_pressure)),
+      choice(row("Results", "outside", "what to do with grains whose centre is outside the box", python_alone,
+                 any_model),
+             "rule for grains outside the box", option(&Options::outside)),
   };
 }
 
@@ -327,7 +347,7 @@ std::vector<Setting> of_steps() {
 const std::vector<Setting>& all_settings() {
   static const std::vector<Setting> all = [] {
     std::vector<Setting> rows;
-    for (auto* part : {of_fluid, of_method, of_solver, of_steps})
+    for (auto* part : {of_fluid, of_method, of_solver, of_steps, of_results})
       for (Setting& setting : part()) rows.push_back(std::move(setting));
     return rows;
   }();

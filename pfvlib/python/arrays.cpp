@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrays.hpp"
+
+#include "pfv/error.hpp"
+
+
+namespace pfv::python {
+namespace {
+
+std::string shape_text(const py::array& array) { return py::str(array.attr("shape")); }
+
+[[noreturn]] void refuse_shape(const char* name, const py::array& array, const std::string& wanted) {
+  throw InputError(std::string(name) + " has the shape " + shape_text(array) + ": give " + wanted);
+}
+
+/// Complex numbers would lose a part, texts and objects are no numbers.
+void require_kind(const py::array& array, const char* name, const char* kinds, const char* wanted) {
+  if (std::string(kinds).find(array.dtype().kind()) == std::string::npos)
+    throw py::type_error(std::string(name) + " has the dtype " + std::string(py::str(array.dtype())) + ": give " +
+                         wanted);
+}
+
+/// Nothing has to be made of it.
+template <class Number>
+bool is_as_wanted(py::handle given) {
+  return Numbers<Number>::check_(given) &&
+         py::detail::check_flags(given.ptr(), py::detail::npy_api::NPY_ARRAY_ALIGNED_);
+}
+
+template <class Number>
+Numbers<Number> numbers_of(py::handle given, const char* name, const char* kinds, const char* wanted) {
+  if (is_as_wanted<Number>(given)) return py::reinterpret_borrow<Numbers<Number>>(given);
+  const py::array array = py::array::ensure(given);
+  if (!array) throw py::type_error(std::string(name) + " is no array: give " + wanted);
+  require_kind(array, name, kinds, wanted);
+  auto numbers = Numbers<Number>::ensure(array);
+  if (!numbers) throw py::type_error(std::string(name) + " cannot be read: give " + wanted);
+  return numbers;
+}
+
+std::string for_each_sphere(py::ssize_t spheres) {
+  return "one for each of the " + std::to_string(spheres) + " spheres";
+}
+
+}  // namespace
+
+Numbers<double> reals_of(py::handle given, const char* name) {
+  return numbers_of<double>(given, name, "fiu", "real numbers (float64)");
+}
+
+Numbers<double> rows_of_three(py::handle given, const char* name) {
+  auto rows = reals_of(given, name);
+  if (rows.ndim() != 2 || rows.shape(1) != 3) refuse_shape(name, rows, "N x 3, a row for each sphere");
+  return rows;
+}
+
+Numbers<double> rows_of_three(py::handle given, const char* name, py::ssize_t spheres) {
+  auto rows = rows_of_three(given, name);
+  if (rows.shape(0) != spheres) refuse_shape(name, rows, "a row of three, " + for_each_sphere(spheres));
+  return rows;
+}
+
+Numbers<double> one_each(py::handle given, const char* name, py::ssize_t spheres) {
+  auto numbers = reals_of(given, name);
+  if (numbers.ndim() != 1 || numbers.shape(0) != spheres) refuse_shape(name, numbers, for_each_sphere(spheres));
+  return numbers;
+}
+
+Numbers<std::int64_t> ids_of(py::handle given, py::ssize_t spheres) {
+  auto ids = numbers_of<std::int64_t>(given, "ids", "iu", "whole numbers (int64)");
+  if (ids.ndim() != 1 || ids.shape(0) != spheres) refuse_shape("ids", ids, for_each_sphere(spheres));
+  return ids;
+}
+
+double number_of(py::handle given, const char* name) {
+  const auto number = reals_of(given, name);
+  if (number.ndim() != 0) refuse_shape(name, number, "one number");
+  return *number.data();
+}
+
+Eigen::Vector3d vector_of(py::handle given, const char* name) {
+  const auto numbers = reals_of(given, name);
+  if (numbers.ndim() != 1 || numbers.size() != 3) refuse_shape(name, numbers, "three numbers, along x, y and z");
+  return {numbers.at(0), numbers.at(1), numbers.at(2)};
+}
+
+py::array array_of(const Eigen::Vector3d& vector) { return py::array_t<double>(3, vector.data()); }
+
+py::array array_of(const std::vector<Eigen::Matrix3d>& matrices) {
+  py::array_t<double> array({static_cast<py::ssize_t>(matrices.size()), py::ssize_t{3}, py::ssize_t{3}});
+  auto numbers = array.mutable_unchecked<3>();
+  for (py::ssize_t n = 0; n < numbers.shape(0); ++n)
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        numbers(n, row, column) = matrices[static_cast<std::size_t>(n)](row, column);
+  return array;
+}
+
+std::string path_of(py::handle given) {
+  return py::module_::import("os").attr("fspath")(given).cast<std::string>();
+}
+
+}  // namespace pfv::python

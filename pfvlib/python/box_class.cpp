@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// pfv.Box
+#include "arrays.hpp"
+#include "classes.hpp"
+#include "faces.hpp"
+#include "keywords.hpp"
+
+#include "pfv/words.hpp"
+
+#include <cmath>
+#include <memory>
+#include <pybind11/stl.h>
+
+namespace pfv::python {
+namespace {
+
+// --------------------------------------------------------------------------------------- numbers
+
+/// One for each axis or face: n x 2 numbers, as lower and upper.
+std::vector<std::array<double, 2>> intervals_of(py::handle given, const char* name, py::ssize_t count) {
+  const auto numbers = reals_of(given, name);
+  if (numbers.ndim() != 2 || numbers.shape(0) != count || numbers.shape(1) != 2)
+    throw InputError(std::string(name) + ": give " + std::to_string(count) + " intervals [lower, upper], m");
+  std::vector<std::array<double, 2>> intervals;
+  for (py::ssize_t k = 0; k < count; ++k) intervals.push_back({numbers.at(k, 0), numbers.at(k, 1)});
+  return intervals;
+}
+
+/// "xy", "x,y", ("x", "y"): axes along which the packing repeats.
+std::array<bool, 3> periodic_of(py::handle given) {
+  std::array<bool, 3> periodic{};
+  for (const py::handle part : given) {
+    const auto axis = part.cast<std::string>();
+    if (axis == "," || axis == " ") continue;
+    if (axis != "x" && axis != "y" && axis != "z")
+      throw InputError("periodic: there is no axis '" + axis + "': give some of x, y, z");
+    periodic[static_cast<std::size_t>(axis[0] - 'x')] = true;
+  }
+  return periodic;
+}
+
+std::string periodic_text(const Box& box) {
+  std::string text;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (box.periodic[axis]) text += "xyz"[axis];
+  return text;
+}
+
+// ------------------------------------------------------------------------------------- boundaries
+
+/// A function of Python. The copies that the library makes of it share one reference, so that none of them
+/// touches the interpreter's counts without its lock.
+std::function<double(const Eigen::Vector3d&, double)> profile_of(const py::function& function) {
+  const std::shared_ptr<py::function> shared(new py::function(function), [](py::function* last) {
+    const py::gil_scoped_acquire lock;
+    delete last;
+  });
+  return [shared](const Eigen::Vector3d& place, double time) {
+    const py::gil_scoped_acquire lock;
+    const py::object pressure = (*shared)(array_of(place), time);
+    const double value = PyFloat_AsDouble(pressure.ptr());
+    if (PyErr_Occurred()) throw py::error_already_set();
+    if (!std::isfinite(value)) throw InputError("the function of a pressure returned a number that is not finite");
+    return value;
+  };
+}
+
+Boundary boundary_of(const BoundaryKind& kind, py::handle value) {
+  Boundary boundary{kind.kind, 0.0, {}};
+  if (!kind.symbol) return boundary;
+  if (kind.kind == Boundary::Kind::pressure && py::isinstance<py::function>(value))
+    boundary.profile = profile_of(py::reinterpret_borrow<py::function>(value));
+  else
+    boundary.value = number_of(value, kind.name);
+  return boundary;
+}
+
+std::vector<std::string> boundary_names() {
+  std::vector<std::string> names;
+  for (const BoundaryKind& kind : boundary_kinds) names.emplace_back(kind.name);
+  return names;
+}
+
+/// The boundary among the keywords of a face, patch or region.
+std::optional<Boundary> boundary_among(const std::string& function, const py::kwargs& keywords) {
+  std::optional<Boundary> boundary;
+  for (const BoundaryKind& kind : boundary_kinds) {
+    if (!keywords.contains(kind.name)) continue;
+    if (!kind.symbol && !py::bool_(keywords[kind.name])) continue;  // sealed=False
+    if (boundary) throw InputError(function + ": give one of sealed, pressure, flux");
+    boundary = boundary_of(kind, keywords[kind.name]);
+  }
+  return boundary;
+}
+
+Boundary required_boundary(const std::string& function, const py::kwargs& keywords) {
+  for (const auto& item : keywords)
+    require_known(function, item.first.cast<std::string>(), boundary_names());
+  const auto boundary = boundary_among(function, keywords);
+  if (!boundary) throw InputError(function + ": give its pressure (Pa), its flux (m3/s) or sealed=True");
+  return *boundary;
+}
+
+py::dict dict_of(const Boundary& boundary) {
+  py::dict dict;
+  for (const BoundaryKind& kind : boundary_kinds)
+    if (kind.kind == boundary.kind)
+      dict[kind.name] = !kind.symbol ? py::object(py::bool_(true))
+                        : boundary.profile ? py::object(py::str("a function"))
+                                           : py::object(py::float_(boundary.value));
+  return dict;
+}
+
+// ------------------------------------------------------------------------------------------ faces
+
+const std::vector<std::string> conditions{"wall", "velocity", "sliding", "spin", "pivot"};
+
+/// Only what is named changes.
+void set_face(Box& box, const std::string& name, const py::kwargs& keywords) {
+  FaceCondition face = condition_of(box, name);
+  std::vector<std::string> known = boundary_names();
+  known.insert(known.end(), conditions.begin(), conditions.end());
+  for (const auto& item : keywords) require_known("face()", item.first.cast<std::string>(), known);
+  if (const auto boundary = boundary_among("face()", keywords)) face.boundary = *boundary;
+  const auto given = [&](const char* key) { return keywords.contains(key); };
+  if (given("wall")) face.wall = named<Wall>(py::str(keywords["wall"]));
+  if (given("velocity")) face.velocity = number_of(keywords["velocity"], "velocity");
+  if (given("spin")) face.spin = number_of(keywords["spin"], "spin");
+  if (given("sliding")) face.sliding = vector_of(keywords["sliding"], "sliding");
+  if (given("pivot")) face.pivot = vector_of(keywords["pivot"], "pivot");
+  condition_of(box, name) = face;
+}
+
+py::dict faces_of(Box& box) {
+  py::dict faces;
+  for (const std::string& name : face_names(box)) {
+    const FaceCondition& face = condition_of(box, name);
+    py::dict condition = dict_of(face.boundary);
+    condition["wall"] = name_of(face.wall);
+    condition["velocity"] = face.velocity;
+    condition["sliding"] = array_of(face.sliding);
+    condition["spin"] = face.spin;
+    condition["pivot"] = array_of(face.pivot);
+    faces[py::str(name)] = condition;
+  }
+  return faces;
+}
+
+void add_patch(Box& box, const std::string& name, py::handle rectangle, const py::kwargs& keywords) {
+  const auto [a, b] = [&] {
+    const auto sides = intervals_of(rectangle, "patch", 2);
+    return std::pair(sides[0], sides[1]);
+  }();
+  box.patches.push_back(patch_of(box, name, {a[0], a[1], b[0], b[1]}, required_boundary("patch()", keywords)));
+}
+
+// -------------------------------------------------------------------------------------- classes
+
+const char* const box_text =
+    R"(A flow box: plane walls normal to the axes, m.
+
+    box = pfv.Box([[0, 1], [0, 1], [0, 2]], wall="symmetry")
+    box.face("zlo", pressure=5.0).face("zhi", pressure=0.0, velocity=-0.01)
+
+bounds: [[xlo, xhi], [ylo, yhi], [zlo, zhi]], m
+wall: "no_slip" or "symmetry", of all sealed faces
+periodic: axes along which the packing repeats, "xy" for instance; their faces do not exist
+gradient: macroscopic pressure gradient along periodic axes, Pa/m, 3 numbers; fluid flows against it
+
+Faces are xlo, xhi, ylo, yhi, zlo, zhi; one that is not named is sealed and at rest. A Flow takes a copy: hand a
+changed box to `Flow.set_box`. Raises InputError for bounds that are flat, inverted or not finite.)";
+
+const char* const face_text =
+    R"(Sets what is named of a face and returns the box.
+
+pressure: Pa, a number or a function of (place, time): 3 numbers (m), s. It is called for each pore of the face
+    at each solve, with the interpreter's lock
+flux: m3/s, positive into the box
+sealed: True
+wall: "no_slip" or "symmetry"
+velocity: m/s along the face's axis, positive along +axis
+sliding: m/s, 3 numbers in the face's plane; spin: rad/s about its axis; pivot: a point of that axis, m
+
+Raises InputError for an unknown face, TypeError for an unknown keyword.)";
+
+const char* const patch_text =
+    R"(Adds a rectangle with a boundary of its own to a face and returns the box.
+
+rectangle: [[a0, a1], [b0, b1]], m, along the two other axes in the order x, y, z
+one of pressure, flux, sealed: as for a face. Where patches overlap, the later one wins.)";
+
+std::string text_of(const Box& box) {
+  std::ostringstream text;
+  text << "pfv.Box([";
+  for (int axis = 0; axis < 3; ++axis)
+    text << (axis ? ", " : "") << '[' << box.lower[axis] << ", " << box.upper[axis] << ']';
+  text << ']';
+  if (box.any_periodic()) text << ", periodic='" << periodic_text(box) << '\'';
+  text << ')';
+  return text.str();
+}
+
+void add_conditions(py::class_<Box>& box) {
+  using namespace py::literals;
+  box.def("face", [](py::object self, const std::string& name, const py::kwargs& keywords) {
+            set_face(self.cast<Box&>(), name, keywords);
+            return self;
+          }, "name"_a, face_text);
+  box.def("patch", [](py::object self, const std::string& name, py::object rectangle, const py::kwargs& keywords) {
+            add_patch(self.cast<Box&>(), name, rectangle, keywords);
+            return self;
+          }, "name"_a, "rectangle"_a, patch_text);
+  box.def("region", [](py::object self, py::object lower, py::object upper, const py::kwargs& keywords) {
+            self.cast<Box&>().regions.push_back({vector_of(lower, "lower"), vector_of(upper, "upper"),
+                                                 required_boundary("region()", keywords)});
+            return self;
+          }, "lower"_a, "upper"_a, R"(Gives the pores between two corners (m) a pressure or a flux; returns the box.
+
+With lower = upper it is the pore nearest to that point.)");
+}
+
+void add_measures(py::class_<Box>& box) {
+  using namespace py::literals;
+  box.def_property("lower", [](const Box& self) { return array_of(self.lower); },
+                   [](Box& self, py::object corner) { self.lower = vector_of(corner, "lower"); },
+                   "Lower corner, m: a copy; assign to move it.");
+  box.def_property("upper", [](const Box& self) { return array_of(self.upper); },
+                   [](Box& self, py::object corner) { self.upper = vector_of(corner, "upper"); },
+                   "Upper corner, m: a copy; assign to move it.");
+  box.def_property("gradient", [](const Box& self) { return array_of(self.pressure_gradient); },
+                   [](Box& self, py::object slope) { self.pressure_gradient = vector_of(slope, "gradient"); },
+                   "Macroscopic pressure gradient along periodic axes, Pa/m.");
+  box.def_property_readonly("periodic", &periodic_text, "Axes along which the packing repeats: \"xy\".");
+  box.def_property_readonly("faces", &faces_of, "{name: {condition: value}} of all faces.");
+  box.def_property_readonly("volume", &Box::volume, "m3");
+  box.def("position", &position_of, "name"_a, "Place of a face on its axis, m.");
+  box.def("area", &area_of, "name"_a, "Area of a face, m2.");
+  box.def("copy", [](const Box& self) { return self; }, "A box of its own.");
+  box.def("__copy__", [](const Box& self) { return self; });
+  box.def("__deepcopy__", [](const Box& self, py::object) { return self; });
+  box.def("__repr__", &text_of);
+}
+
+}  // namespace
+
+Box make_box(py::handle bounds, const std::string& wall, py::handle periodic, py::handle gradient) {
+  Box box;
+  const auto intervals = intervals_of(bounds, "box", 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = intervals[static_cast<std::size_t>(axis)][0];
+    box.upper[axis] = intervals[static_cast<std::size_t>(axis)][1];
+  }
+  box.periodic = periodic_of(periodic);
+  box.pressure_gradient = vector_of(gradient, "gradient");
+  for (const std::string& name : face_names(box)) condition_of(box, name).wall = named<Wall>(wall);
+  check(box);
+  return box;
+}
+
+Box box_of(py::handle given) {
+  if (py::isinstance<Box>(given)) return given.cast<Box>();
+  return make_box(given, name_of(Wall::no_slip), py::str(""), py::make_tuple(0.0, 0.0, 0.0));
+}
+
+void add_box_class(py::module_& module) {
+  using namespace py::literals;
+  py::class_<Box> box(module, "Box", box_text);
+  box.def(py::init(&make_box), "bounds"_a, py::kw_only(), "wall"_a = "no_slip", "periodic"_a = "",
+          "gradient"_a = py::make_tuple(0.0, 0.0, 0.0));
+  add_conditions(box);
+  add_measures(box);
+}
+
+}  // namespace pfv::python

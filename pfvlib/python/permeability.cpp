@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// pfv.permeability
+#include "classes.hpp"
+#include "faces.hpp"
+#include "grains.hpp"
+#include "keywords.hpp"
+
+#include "pfv/darcy_grid.hpp"
+
+namespace pfv::python {
+namespace {
+
+using namespace py::literals;
+
+/// The sides let fluid slide along; a fall of 1 Pa drives it along the axis.
+Box sample(py::handle bounds, const std::string& axis, const std::string& periodic) {
+  if (axis != "x" && axis != "y" && axis != "z")
+    throw InputError("there is no axis '" + axis + "': give x, y or z");
+  Box box = make_box(bounds, name_of(Wall::symmetry), py::str(periodic), py::make_tuple(0.0, 0.0, 0.0));
+  const int along = axis[0] - 'x';
+  if (box.periodic[static_cast<std::size_t>(along)]) {
+    box.pressure_gradient[along] = -1.0 / (box.upper[along] - box.lower[along]);
+    return box;
+  }
+  condition_of(box, axis + "lo").boundary = Boundary::pressure(1.0);
+  condition_of(box, axis + "hi").boundary = Boundary::pressure(0.0);
+  return box;
+}
+
+Report report_of(const Box& box, const Settings& settings, const Packing& packing) {
+  const py::gil_scoped_release released;
+  const auto model = make_flow(box, settings.fluid, settings.options, settings.grid());
+  model->evaluate(packing);
+  return model->report();
+}
+
+void warn_of(const Report& report) {
+  const py::object type = py::module_::import("pfv._errors").attr("AccuracyWarning");
+  for (const std::string& reason : report.outside_range) {
+    const std::string text = "the permeability's estimated error may not hold: " + reason;
+    if (PyErr_WarnEx(type.ptr(), text.c_str(), 1) < 0) throw py::error_already_set();
+  }
+}
+
+double permeability(py::object positions, py::object radii, py::object box, const std::string& axis,
+                    const std::string& periodic, py::object ids, const py::kwargs& keywords) {
+  const Grains grains({positions, radii, py::none(), py::none(), ids, py::none()});
+  Settings settings;
+  settings.options.forces = false;
+  read_keywords("permeability()", keywords, all_keywords(), settings);
+  settle(settings);
+  check(settings);
+  const Report report = report_of(sample(box, axis, periodic), settings, grains.packing());
+  if (!report.permeability)
+    throw InputError("no permeability in this box: it takes an incompressible fluid, grains at rest and a fall of "
+                     "pressure along one axis");
+  warn_of(report);
+  return *report.permeability;
+}
+
+}  // namespace
+
+void add_permeability(py::module_& module) {
+  const std::string doc = R"(Permeability of a packing, m2.
+
+    pfv.permeability(positions, radii, [[0, 1], [0, 1], [0, 1]])
+
+positions: N x 3, m; radii: N, m
+box: [[xlo, xhi], [ylo, yhi], [zlo, zhi]], m
+axis: of the fall of pressure
+periodic: axes along which the packing repeats, "xy" for instance; the other sides let fluid slide along
+ids: N whole numbers, unique, which errors name (None: the numbers of the rows, from 0)
+
+It is what `pfv solve --wall symmetry --face zlo:pressure=1 --face zhi:pressure=0` reports, to the last digit; for
+its estimated error take `Flow.report()["permeability_error"]`. Warns (AccuracyWarning) where that may not hold.
+Cost: a network, its factor, one solve. Raises InputError with the ids of the spheres, SolverError, TypeError for an
+unknown keyword. Keywords, as for Flow:
+)" + help_of(all_keywords());
+  module.def("permeability", &permeability, doc.c_str(), "positions"_a, "radii"_a, "box"_a, py::kw_only(),
+             "axis"_a = "z", "periodic"_a = "", "ids"_a = py::none());
+}
+
+}  // namespace pfv::python
