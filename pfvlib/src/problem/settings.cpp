@@ -277,6 +277,17 @@ std::vector<Setting> of_method() {
   };
 }
 
+Setting tolerance() {
+  Setting setting = number(row("Solver", "tolerance", "residual over right-hand side where the solver ends",
+                               {true, true}, any_model),
+                           "tolerance", "T", "", demands::part, option(&Options::tolerance));
+  setting.solvers = &SolverAbilities::is_iterative;
+  setting.text = [](const Settings& settings) {
+    return settings.options.tolerance ? number_text(*settings.options.tolerance) : own_tolerances();
+  };
+  return setting;
+}
+
 std::vector<Setting> of_solver() {
   Setting solver = choice(row("Solver", "solver", "linear solver; auto: ", both, any_model), "solver",
                           option(&Options::solver));
@@ -288,10 +299,7 @@ std::vector<Setting> of_solver() {
   return {
       solver,
       ordering,
-      of_solvers(number(row("Solver", "tolerance", "residual over right-hand side where the solver ends", both,
-                            any_model),
-                        "tolerance", "T", "", demands::part, option(&Options::tolerance)),
-                 &SolverAbilities::is_iterative),
+      tolerance(),
       of_solvers(choice(row("Solver", "precision",
                             "how the solver keeps its factor: mixed has half as much to read a step and solves to a "
                             "residual of 1e-9",

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/amg_solver.hpp"
+
+#include "network/disjoint_sets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pfv {
+namespace {
+
+constexpr int most_iterations = 500;
+constexpr int first_look = 2;  // iterations from x = 0 after which x tells how much flows
+constexpr double drift = 2.0;  // b - A x over its recurrence, from which on the recurrence is of no use
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// The sum of each row; 0 where it is nothing but rounding.
+Eigen::VectorXd row_sums(const SymmetricMatrix& matrix) {
+  Eigen::VectorXd sums(matrix.size());
+  for (int row = 0; row < matrix.size(); ++row) {
+    double sum = 0.0, magnitude = 0.0;
+    for (int k = matrix.row_begin[row]; k < matrix.row_begin[row + 1]; ++k) {
+      sum += matrix.value[k];
+      magnitude += std::abs(matrix.value[k]);
+    }
+    const int entries = matrix.row_begin[row + 1] - matrix.row_begin[row];
+    sums[row] = std::abs(sum) > entries * epsilon * magnitude ? sum : 0.0;
+  }
+  return sums;
+}
+
+}  // namespace
+
+void AmgSolver::analyze_pattern(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd& coordinates) {
+  multigrid_.clear();
+  ConjugateGradient::analyze_pattern(matrix, coordinates);
+}
+
+void AmgSolver::factor_values(const SymmetricMatrix& matrix) {
+  keep_values(matrix);
+  held_ = row_sums(matrix);
+  refuse_lost_pressures();
+  last_.forget();
+  multigrid_.build(matrix);
+}
+
+/// Conjugate gradients would end at any pressure of a group of pores that nothing holds.
+void AmgSolver::refuse_lost_pressures() {
+  DisjointSets groups(size());
+  for (int row = 0; row < size(); ++row)
+    for (int k = matrix_.row_begin[row]; k < matrix_.row_begin[row + 1]; ++k)
+      if (matrix_.value[k] != 0.0) groups.join(row, matrix_.column[k]);
+  std::vector<char> is_held(static_cast<std::size_t>(size()), 0);
+  for (int row = 0; row < size(); ++row)
+    if (held_[row] != 0.0) is_held[groups.find(row)] = 1;
+  for (int row = 0; row < size(); ++row)
+    if (!is_held[groups.find(row)]) fail_at(row);
+}
+
+void AmgSolver::begin(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  if (!x.allFinite()) x.setZero();
+  if (!x.isZero(0.0)) last_.begin(matrix_, b, x);
+}
+
+/// By differences of pressures, which keep the digits of what flows where pressures are large.
+void AmgSolver::measure(const Eigen::VectorXd& b, const Eigen::VectorXd& x, Defect& defect) const {
+  defect.r.resize(size());
+  double flow = 0.0;
+  for (int row = 0; row < size(); ++row) {
+    const double source = b[row] - held_[row] * x[row];
+    double net = source, gross = std::abs(source);
+    for (int k = matrix_.row_begin[row]; k < matrix_.row_begin[row + 1]; ++k) {
+      const double inflow = -matrix_.value[k] * (x[matrix_.column[k]] - x[row]);
+      net += inflow;
+      gross += std::abs(inflow);
+    }
+    defect.r[row] = net;
+    flow += 0.25 * gross * gross;
+  }
+  defect.size = defect.r.norm();
+  defect.flow = std::sqrt(flow);
+}
+
+/// Against the flow, not b: with imposed pressures b is what their throats would carry if all other pressures were
+/// 0, in a packing of 20 000 grains two thousand times what flows.
+bool AmgSolver::is_small(const Defect& defect) const {
+  return defect.size <= std::max(tolerance_, 8.0 * epsilon) * defect.flow;
+}
+
+/// The second condition is for pores behind throats far narrower than all others: little flow, wrong pressures.
+bool AmgSolver::is_solved(const Eigen::VectorXd& x, const Defect& defect) const {
+  return is_small(defect) &&
+         error().lpNorm<Eigen::Infinity>() <= tolerance_ * x.lpNorm<Eigen::Infinity>();
+}
+
+void AmgSolver::iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  iterations_ = 0;
+  Defect recurrence, seen;
+  measure(b, x, recurrence);
+  set_out(recurrence.r);
+  if (is_solved(x, recurrence)) return;
+  while (iterations_ < most_iterations && advance(x, recurrence.r)) {
+    ++iterations_;
+    recurrence.size = recurrence.r.norm();
+    if (!is_small(recurrence) && iterations_ != first_look) continue;
+    measure(b, x, seen);
+    if (is_solved(x, seen)) return;
+    recurrence.flow = seen.flow;
+    if (seen.size <= drift * recurrence.size) continue;
+    std::swap(recurrence, seen);
+    set_out(recurrence.r);
+  }
+  fail_after(iterations_, b, recurrence.r);
+}
+
+}  // namespace pfv
