@@ -139,8 +139,9 @@ struct Options {
   SolverKind solver = SolverKind::automatic;
   OrderingKind ordering = OrderingKind::automatic;
   Precision precision = Precision::full;
-  /// Where amg, cg and gauss_seidel end: residual over right-hand side (2-norms), in (0, 1): the pores' mass
-  /// defect over what has to flow. Absent: the solver's own (problem/solver_abilities.hpp). Direct solvers refuse one.
+  /// Where iterative solvers end, in (0, 1), 2-norms: cg and gauss_seidel at this residual over the right-hand side
+  /// (absent: 1e-10), amg at this mass defect of the pores over the flow through them (absent: 1e-7). Direct solvers
+  /// refuse one.
   std::optional<double> tolerance;
   /// Threads that share a step, 1 ... 64. They change no byte of any result.
   int threads = 1;

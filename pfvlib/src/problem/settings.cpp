@@ -278,7 +278,7 @@ std::vector<Setting> of_method() {
 }
 
 Setting tolerance() {
-  Setting setting = number(row("Solver", "tolerance", "residual over right-hand side where the solver ends",
+  Setting setting = number(row("Solver", "tolerance", "where an iterative solver ends: residual over right-hand side; of amg mass defect over flow through the pores",
                                {true, true}, any_model),
                            "tolerance", "T", "", demands::part, option(&Options::tolerance));
   setting.solvers = &SolverAbilities::is_iterative;

@@ -35,7 +35,7 @@ constexpr SolverAbilities table[] = {
     {Solver::mumps, has_mumps, "MUMPS", "MUMPS", "MUMPS", Ordering::automatic, false, false, false, false, true, false,
      0.0},
     {Solver::amg, true, nullptr, "hypre's BoomerAMG", "pfv", Ordering::automatic, false, false, false, false, false,
-     true, 1e-6},
+     true, 1e-7},
     {Solver::cg, true, nullptr, "pfv", "pfv", Ordering::automatic, false, false, true, false, true, true, 1e-10},
     {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, true, true,
      1e-10},

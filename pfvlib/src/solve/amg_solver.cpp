@@ -15,6 +15,7 @@ namespace {
 constexpr int most_iterations = 500;
 constexpr int first_look = 2;  // iterations from x = 0 after which x tells how much flows
 constexpr double drift = 2.0;  // b - A x over its recurrence, from which on the recurrence is of no use
+constexpr double lost = 1e-6;  // error of pressures, of the largest, that rounding may cost
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// The sum of each row; 0 where it is nothing but rounding.
@@ -68,32 +69,37 @@ void AmgSolver::begin(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
 /// By differences of pressures, which keep the digits of what flows where pressures are large.
 void AmgSolver::measure(const Eigen::VectorXd& b, const Eigen::VectorXd& x, Defect& defect) const {
   defect.r.resize(size());
-  double flow = 0.0;
+  double flow = 0.0, magnitude = 0.0;  // squared norms
   for (int row = 0; row < size(); ++row) {
     const double source = b[row] - held_[row] * x[row];
-    double net = source, gross = std::abs(source);
+    double net = source, gross = std::abs(source), uncancelled = 0.0;
     for (int k = matrix_.row_begin[row]; k < matrix_.row_begin[row + 1]; ++k) {
-      const double inflow = -matrix_.value[k] * (x[matrix_.column[k]] - x[row]);
+      const double there = x[matrix_.column[k]], inflow = -matrix_.value[k] * (there - x[row]);
       net += inflow;
       gross += std::abs(inflow);
+      uncancelled += std::abs(matrix_.value[k] * there);
     }
     defect.r[row] = net;
     flow += 0.25 * gross * gross;
+    magnitude += uncancelled * uncancelled;
   }
   defect.size = defect.r.norm();
   defect.flow = std::sqrt(flow);
+  defect.rounding = 2.0 * epsilon * std::sqrt(magnitude);
 }
 
 /// Against the flow, not b: with imposed pressures b is what their throats would carry if all other pressures were
 /// 0, in a packing of 20 000 grains two thousand times what flows.
-bool AmgSolver::is_small(const Defect& defect) const {
-  return defect.size <= std::max(tolerance_, 8.0 * epsilon) * defect.flow;
+double AmgSolver::tolerated(const Defect& defect) const {
+  return std::max(tolerance_ * defect.flow, defect.rounding);
 }
 
-/// The second condition is for pores behind throats far narrower than all others: little flow, wrong pressures.
+/// The error of the pressures is looked at for pores behind throats far narrower than all others: little flow,
+/// wrong pressures.
 bool AmgSolver::is_solved(const Eigen::VectorXd& x, const Defect& defect) const {
-  return is_small(defect) &&
-         error().lpNorm<Eigen::Infinity>() <= tolerance_ * x.lpNorm<Eigen::Infinity>();
+  if (!(defect.size <= tolerated(defect))) return false;
+  const double part = defect.size <= defect.rounding ? std::max(tolerance_, lost) : tolerance_;
+  return error().lpNorm<Eigen::Infinity>() <= part * x.lpNorm<Eigen::Infinity>();
 }
 
 void AmgSolver::iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
@@ -102,13 +108,14 @@ void AmgSolver::iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   measure(b, x, recurrence);
   set_out(recurrence.r);
   if (is_solved(x, recurrence)) return;
+  double end = tolerated(recurrence);
   while (iterations_ < most_iterations && advance(x, recurrence.r)) {
     ++iterations_;
     recurrence.size = recurrence.r.norm();
-    if (!is_small(recurrence) && iterations_ != first_look) continue;
+    if (recurrence.size > end && iterations_ != first_look) continue;
     measure(b, x, seen);
     if (is_solved(x, seen)) return;
-    recurrence.flow = seen.flow;
+    end = tolerated(seen);
     if (seen.size <= drift * recurrence.size) continue;
     std::swap(recurrence, seen);
     set_out(recurrence.r);

@@ -10,7 +10,7 @@ namespace pfv {
 /// Conjugate gradients with hypre's BoomerAMG, whose hierarchy serves all right-hand sides of a matrix of
 /// conductances (no positive entry beside the diagonal). Ends where the mass defect of the pores is below
 /// `tolerance` of the flow through them (2-norms) and the error of the pressures, as a V-cycle sees it, below
-/// `tolerance` of the largest. An x that is not 0 is the last solution of a sequence: the solve sets out from it and
+/// `tolerance` of the largest, or where both are rounding. An x that is not 0 is the last solution of a sequence: the solve sets out from it and
 /// the changes before; the bytes of x are then those of the sequence.
 class AmgSolver final : public ConjugateGradient {
  public:
@@ -25,6 +25,7 @@ class AmgSolver final : public ConjugateGradient {
     Eigen::VectorXd r;  ///< b - A x: what of each pore's mass is lost
     double size = 0.0;  ///< 2-norm of r
     double flow = 0.0;  ///< that of the flow through each pore: half of what its throats and sources carry
+    double rounding = 0.0;  ///< of r, from the last digits of x
   };
 
   void analyze_pattern(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd& coordinates) override;
@@ -33,8 +34,8 @@ class AmgSolver final : public ConjugateGradient {
   void iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) override;
   void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const override { multigrid_.apply(r, z); }
   void refuse_lost_pressures();
+  double tolerated(const Defect& defect) const;
   void measure(const Eigen::VectorXd& b, const Eigen::VectorXd& x, Defect& defect) const;
-  bool is_small(const Defect& defect) const;
   bool is_solved(const Eigen::VectorXd& x, const Defect& defect) const;
 
   AlgebraicMultigrid multigrid_;
