@@ -278,12 +278,21 @@ std::vector<Setting> of_method() {
 }
 
 Setting tolerance() {
-  Setting setting = number(row("Solver", "tolerance", "where an iterative solver ends: residual over right-hand side; of amg mass defect over flow through the pores",
+  Setting setting = number(row("Solver", "tolerance",
+                               "where an iterative solver ends: residual over right-hand side; of amg mass defect over "
+                               "flow through the pores; auto: ",
                                {true, true}, any_model),
-                           "tolerance", "T", "", demands::part, option(&Options::tolerance));
+                           "tolerance", "auto|T", "", demands::part, option(&Options::tolerance));
+  setting.help += own_tolerances();
   setting.solvers = &SolverAbilities::is_iterative;
+  setting.read = [number = setting.read](Settings& settings, Words& words) {
+    if (words.take("auto"))
+      settings.options.tolerance.reset();
+    else
+      number(settings, words);
+  };
   setting.text = [](const Settings& settings) {
-    return settings.options.tolerance ? number_text(*settings.options.tolerance) : own_tolerances();
+    return settings.options.tolerance ? number_text(*settings.options.tolerance) : "auto";
   };
   return setting;
 }

@@ -48,12 +48,14 @@ void AmgSolver::factor_values(const SymmetricMatrix& matrix) {
   multigrid_.build(matrix);
 }
 
-/// Conjugate gradients would end at any pressure of a group of pores that nothing holds.
+/// Conjugate gradients would end at any pressure of a group of pores that nothing holds. A throat that is rounding
+/// beside what either of its pores conducts holds none.
 void AmgSolver::refuse_lost_pressures() {
   DisjointSets groups(size());
   for (int row = 0; row < size(); ++row)
     for (int k = matrix_.row_begin[row]; k < matrix_.row_begin[row + 1]; ++k)
-      if (matrix_.value[k] != 0.0) groups.join(row, matrix_.column[k]);
+      if (std::abs(matrix_.value[k]) > 4.0 * epsilon * matrix_.value[diagonal_[row]])
+        groups.join(row, matrix_.column[k]);
   std::vector<char> is_held(static_cast<std::size_t>(size()), 0);
   for (int row = 0; row < size(); ++row)
     if (held_[row] != 0.0) is_held[groups.find(row)] = 1;

@@ -86,6 +86,7 @@ bool IterativeSolver::is_solved(const Eigen::VectorXd& b, const Eigen::VectorXd&
 }
 
 void ConjugateGradient::set_out(const Eigen::VectorXd& r) {
+  z_.resize(r.size());
   precondition(r, z_);
   direction_ = z_;
   rz_ = r.dot(z_);
