@@ -237,6 +237,25 @@ TEST(Amg, SetsOutFromTheLastSolutions) {
   EXPECT_EQ(x, z);
 }
 
+// A fix looks at a step once more where it writes a restart file.
+TEST(Amg, SolvingTwiceChangesNothingInWhatFollows) {
+  const SymmetricMatrix matrix = lattice(10);
+  AmgSolver once(1e-7), twice(1e-7);
+  Eigen::VectorXd x, y;
+  for (AmgSolver* each : {&once, &twice}) {
+    each->order(matrix, {});
+    each->factor(matrix);
+  }
+  for (int step = 0; step < 6; ++step) {
+    const Eigen::VectorXd b = right_side(matrix.size()).array().pow(1.0 + 0.1 * step);
+    once.solve(b, x);
+    twice.solve(b, y);
+    twice.solve(b, y);
+    EXPECT_EQ(twice.iterations(), 0);
+    EXPECT_EQ(x, y) << step;
+  }
+}
+
 TEST(Amg, AnotherUnitChangesNoDigit) {
   SymmetricMatrix matrix = lattice(6);
   const Eigen::VectorXd b = right_side(matrix.size());

@@ -36,6 +36,7 @@ class AmgSolver final : public ConjugateGradient {
   void refuse_lost_pressures();
   double tolerated(const Defect& defect) const;
   void measure(const Eigen::VectorXd& b, const Eigen::VectorXd& x, Defect& defect) const;
+  bool is_solved_by_last(const Eigen::VectorXd& b, Eigen::VectorXd& x, Defect& defect);
   bool is_solved(const Eigen::VectorXd& x, const Defect& defect) const;
 
   AlgebraicMultigrid multigrid_;

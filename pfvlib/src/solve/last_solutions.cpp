@@ -47,10 +47,9 @@ void LastSolutions::remember(const SymmetricMatrix& matrix, const Eigen::VectorX
   last_ = x;
 }
 
-void LastSolutions::begin(const SymmetricMatrix& matrix, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+void LastSolutions::begin(const SymmetricMatrix& matrix, const Eigen::VectorXd& r, Eigen::VectorXd& x) {
   remember(matrix, x);
   if (changes_.empty()) return;
-  const Eigen::VectorXd r = b - multiply(matrix, x);
   Eigen::VectorXd sums(products_.rows());
   for (Eigen::Index k = 0; k < sums.size(); ++k) sums[k] = changes_[static_cast<std::size_t>(k)].dot(r);
   const Eigen::VectorXd parts = combination(products_, sums);

@@ -17,9 +17,9 @@ class LastSolutions {
   explicit LastSolutions(std::size_t most) : most_(most) {}
   /// For another matrix.
   void forget();
-  /// `x`: the last solution; becomes the beginning for b. Cost: two products with A and three reads of each
-  /// change.
-  void begin(const SymmetricMatrix& matrix, const Eigen::VectorXd& b, Eigen::VectorXd& x);
+  /// `x`: the last solution; becomes the beginning for b. `r`: b - A x. Cost: a product with A and three reads of
+  /// each change.
+  void begin(const SymmetricMatrix& matrix, const Eigen::VectorXd& r, Eigen::VectorXd& x);
 
  private:
   void remember(const SymmetricMatrix& matrix, const Eigen::VectorXd& x);
