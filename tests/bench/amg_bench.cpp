@@ -90,7 +90,9 @@ class Motions {
 struct Error {
   double rms = 0.0, worst = 0.0;  ///< of the force, over its rms
   void add(const Eigen::Matrix3Xd& found, const Eigen::Matrix3Xd& exact) {
-    const auto mean = [](const Eigen::Matrix3Xd& f) { return std::sqrt(f.squaredNorm() / static_cast<double>(f.cols())); };
+    const auto mean = [](const Eigen::Matrix3Xd& f) {
+      return std::sqrt(f.squaredNorm() / static_cast<double>(f.cols()));
+    };
     rms = std::max(rms, mean(found - exact) / mean(exact));
     worst = std::max(worst, (found - exact).colwise().norm().maxCoeff() / mean(exact));
   }
@@ -143,8 +145,8 @@ void tolerance_row(const PackingArrays& packing, const Options& options, const s
 }
 
 void tolerance_table(const std::vector<int>& sizes) {
-  std::printf("| spheres | tolerance | first solve, ms | later solve, ms | rms error of forces: through | flux | moving | "
-              "worst sphere | mass error |\n|--|--|--|--|--|--|--|--|--|\n");
+  std::printf("| spheres | tolerance | first solve, ms | later solve, ms | rms error of forces: through | flux | "
+              "moving | worst sphere | mass error |\n|--|--|--|--|--|--|--|--|--|\n");
   for (const int spheres : sizes) {
     const PackingArrays packing = dense_packing(spheres);
     Options options;
@@ -177,7 +179,8 @@ struct System {
         bases(::support::bases_of(stages)),
         unknowns(number_unknowns(stages.network, stages.boundaries, stages.box)),
         system(assemble(stages.network,
-                        conductances(ConductanceLaw::open_throat, 1.0, stages.network, stages.throats, stages.spheres).value,
+                        conductances(ConductanceLaw::open_throat, 1.0, stages.network, stages.throats,
+                                     stages.spheres).value,
                         unknowns, {})),
         places(3, unknowns.count) {
     for (int pore = 0; pore < stages.network.pores(); ++pore)
@@ -214,7 +217,8 @@ Sequence sequence_of(LinearSolver& solver, const std::vector<Eigen::VectorXd>& r
 }
 
 void starts_table(const std::vector<int>& sizes) {
-  std::printf("| spheres, motion | tolerance | changes kept: 0 | 1 | 2 | 4 | 6 | 8 | 12 |\n|--|--|--|--|--|--|--|--|--|\n");
+  std::printf("| spheres, motion | tolerance | changes kept: 0 | 1 | 2 | 4 | 6 | 8 | 12 |\n"
+              "|--|--|--|--|--|--|--|--|--|\n");
   for (const int spheres : sizes) {
     const PackingArrays packing = dense_packing(spheres);
     const System system(packing);
@@ -263,8 +267,9 @@ Costs costs_of(const System& system, const std::vector<Eigen::VectorXd>& right_s
 }
 
 void sizes_table(const std::vector<int>& sizes) {
-  std::printf("| spheres, unknowns | supernodal: order + factor, s | MB held | solve, ms | amg: hierarchy, s | MB held | "
-              "first solve: iterations, ms | later solve: iterations, ms | steps a network below which amg takes less |\n"
+  std::printf("| spheres, unknowns | supernodal: order + factor, s | MB held | solve, ms | amg: hierarchy, s | "
+              "MB held | first solve: iterations, ms | later solve: iterations, ms | steps a network below which amg "
+              "takes less |\n"
               "|--|--|--|--|--|--|--|--|--|\n");
   for (const int spheres : sizes) {
     const PackingArrays packing = dense_packing(spheres);
@@ -288,7 +293,8 @@ void sizes_table(const std::vector<int>& sizes) {
 
 int entries_of_fullest_row(const SymmetricMatrix& matrix) {
   int most = 0;
-  for (int row = 0; row < matrix.size(); ++row) most = std::max(most, matrix.row_begin[row + 1] - matrix.row_begin[row]);
+  for (int row = 0; row < matrix.size(); ++row)
+    most = std::max(most, matrix.row_begin[row + 1] - matrix.row_begin[row]);
   return most;
 }
 

@@ -27,7 +27,7 @@ MPI_Comm communicator() {
   return MPI_COMM_SELF;
 }
 
-/// hypre collects its errors in a flag.
+/// hypre collects its errors in a flag, which may be one of the host program before.
 void throw_error(const char* what) {
   const HYPRE_Int error = HYPRE_GetError();
   if (error == 0) return;
@@ -144,6 +144,7 @@ void AlgebraicMultigrid::clear() { hierarchy_.reset(); }
 
 void AlgebraicMultigrid::build(const SymmetricMatrix& matrix) {
   clear();  // its memory is the new one's
+  HYPRE_ClearAllErrors();
   auto fresh = std::make_unique<Hierarchy>(matrix);
   throw_error("the hierarchy was not built");
   hierarchy_ = std::move(fresh);
@@ -151,6 +152,7 @@ void AlgebraicMultigrid::build(const SymmetricMatrix& matrix) {
 
 void AlgebraicMultigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
   Hierarchy& h = *hierarchy_;
+  HYPRE_ClearAllErrors();
   h.right_side.set(r);
   HYPRE_ParVectorSetConstantValues(h.solution.get(), 0.0);
   HYPRE_BoomerAMGSolve(h.amg, h.matrix.get(), h.right_side.get(), h.solution.get());

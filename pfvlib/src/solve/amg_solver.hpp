@@ -10,8 +10,8 @@ namespace pfv {
 /// Conjugate gradients with hypre's BoomerAMG, whose hierarchy serves all right-hand sides of a matrix of
 /// conductances (no positive entry beside the diagonal). Ends where the mass defect of the pores is below
 /// `tolerance` of the flow through them (2-norms) and the error of the pressures, as a V-cycle sees it, below
-/// `tolerance` of the largest, or where both are rounding. An x that is not 0 is the last solution of a sequence: the solve sets out from it and
-/// the changes before; the bytes of x are then those of the sequence.
+/// `tolerance` of the largest, or where both are rounding. An x that is not 0 is the last solution of a sequence:
+/// the solve sets out from it and the changes before; the bytes of x are then those of the sequence.
 class AmgSolver final : public ConjugateGradient {
  public:
   /// `changes_kept`: doc/solvers.md has how many pay.
