@@ -175,6 +175,7 @@ int main(int argc, char** argv) {
   if (abilities_of(SolverKind::mumps).is_built)
     add({SolverKind::mumps, OrderingKind::automatic}, 20000);
   add({SolverKind::klu2, OrderingKind::automatic}, 5000);  // a minute at 20000
+  add({SolverKind::amg, OrderingKind::automatic}, 20000);
   add({SolverKind::cg, OrderingKind::automatic}, 20000);
   add({SolverKind::gauss_seidel, OrderingKind::automatic}, 1000);  // ten seconds a solve at 5000
   benchmark::Initialize(&argc, argv);

@@ -3,7 +3,7 @@
 """Writes the tables of doc/solvers.md that stand between markers, each by its program:
 
     tests/bench/solver_tables.py [--build BUILD] [TABLE...]      (solvers, bound, precision, background, refreshed,
-                                                                 cells)
+                                                                 cells, sizes, tolerance, starts, flux)
 
 CPU times: compare the columns of a table, which one run has made.
 """
@@ -40,7 +40,7 @@ def precision(build):
 
 
 SIZES = (1000, 5000, 20000)
-SOLVERS = ("supernodal", "cholmod", "tacho", "mumps", "klu2", "cg", "gauss_seidel")
+SOLVERS = ("supernodal", "cholmod", "tacho", "mumps", "klu2", "amg", "cg", "gauss_seidel")
 ORDERINGS = ("geometric", "metis", "amd", "auto")
 
 
@@ -99,6 +99,10 @@ TABLES = {
     "background": lambda build: output(build / "bin/pfv_background_bench"),
     "refreshed": lambda build: output(build / "bin/pfv_refresh_bench").partition("\n\n")[2],
     "cells": lambda build: output(build / "bin/pfv_refresh_bench", "cells"),
+    "sizes": lambda build: output(build / "bin/pfv_amg_bench", "sizes", 5000, 20000, 100000),
+    "tolerance": lambda build: output(build / "bin/pfv_amg_bench", "tolerance"),
+    "starts": lambda build: output(build / "bin/pfv_amg_bench", "starts"),
+    "flux": lambda build: output(build / "bin/pfv_amg_bench", "flux"),
 }
 
 

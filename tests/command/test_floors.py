@@ -24,7 +24,8 @@ class Floors(unittest.TestCase):
         self.assertEqual(sorted(arrows), [])
 
     def test_libraries_are_included_in_one_room_each(self):
-        for library, rooms in (("CGAL/", {"network"}), ("Amesos2", {"solve"}), ("Tpetra", {"solve"})):
+        for library, rooms in (("CGAL/", {"network"}), ("Amesos2", {"solve"}), ("Tpetra", {"solve"}),
+                               ("HYPRE", {"solve"}), ("mpi.h", {"solve"})):
             found = {file.parent.name for file in SOURCE.glob("*/*.?pp")
                      if f"#include <{library}" in file.read_text()}
             self.assertTrue(found, library)

@@ -36,6 +36,10 @@ class Restart(CoupledTest):
         self.assertEqual(rows[-1]["Step"], 20)
         self.assertGreater(rows[-1]["flow"], 0.0)
 
+    def test_a_solver_that_sets_out_from_the_last_solutions(self):
+        for words in ("", "bulk_modulus 1e4", "coupling staged"):
+            self.compare(f"fix flow all pfv {FLOW} solver amg {words}\n")
+
     def test_two_ranks_write_the_same_bytes_too(self):
         for words in ("", "bulk_modulus 1e4", "retriangulate 1e-6"):
             self.compare(f"fix flow all pfv {FLOW} {words}\n", ranks=2)

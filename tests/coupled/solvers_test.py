@@ -13,6 +13,7 @@ MADE_BY = {"auto": ("geometric", "factored by pfv", "solved by pfv"),
            "tacho": ("METIS", "factored by Tacho", "solved by Tacho"),
            "klu2": ("KLU2", "factored by KLU2", "solved by KLU2"),
            "mumps": ("MUMPS", "factored by MUMPS", "solved by MUMPS"),
+           "amg tolerance 1e-10": ("preconditioned by hypre's BoomerAMG", "solved by pfv"),
            "cg": ("preconditioned by pfv", "solved by pfv")}
 if os.environ.get("PFV_WITH_MUMPS") == "OFF":
     del MADE_BY["mumps"]
@@ -37,9 +38,9 @@ class Solvers(CoupledTest):
             for word in words:
                 self.assertIn(word, end)
 
-    def test_tacho_and_mumps_stay_on_their_rank(self):
+    def test_tacho_mumps_and_amg_stay_on_their_rank(self):
         expected, _ = self.run_with("auto", ranks=2)
-        for solver in MADE_BY.keys() & {"tacho", "mumps"}:
+        for solver in MADE_BY.keys() & {"tacho", "mumps", "amg tolerance 1e-10"}:
             self.assertLess(largest_difference(self.run_with(solver, ranks=2)[0], expected), 1e-8, solver)
 
 

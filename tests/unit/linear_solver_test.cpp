@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <ostream>
 
 namespace pfv {
@@ -21,6 +22,7 @@ struct Choice {
   OrderingKind ordering;
   const char* label;
   double residual = 0.0;  ///< that an iterative solver may leave
+  std::optional<double> tolerance = {};
 };
 
 void PrintTo(const Choice& choice, std::ostream* stream) { *stream << choice.label; }
@@ -29,7 +31,11 @@ class EverySolver : public testing::TestWithParam<Choice> {
  protected:
   std::unique_ptr<LinearSolver> solver_ = fresh();
   static std::unique_ptr<LinearSolver> fresh() {
-    return make_solver(GetParam().solver, GetParam().ordering);
+    Options options;
+    options.solver = GetParam().solver;
+    options.ordering = GetParam().ordering;
+    options.tolerance = GetParam().tolerance;
+    return make_solver(options);
   }
   /// The error of a direct solver, or what an iterative one leaves.
   static double within(double rounding) { return std::max(rounding, GetParam().residual); }
@@ -47,6 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
 #ifdef PFV_WITH_MUMPS
                     Choice{SolverKind::mumps, OrderingKind::automatic, "mumps"},
 #endif
+                    Choice{SolverKind::amg, OrderingKind::automatic, "amg", 1e-10, 1e-12},
                     Choice{SolverKind::cg, OrderingKind::automatic, "cg", 1e-10},
                     Choice{SolverKind::gauss_seidel, OrderingKind::automatic, "gauss_seidel",
                            1e-10}),

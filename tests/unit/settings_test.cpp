@@ -196,7 +196,7 @@ TEST(SettingsTable, RefusesWhatIsNotReadAlsoAtItsDefault) {
   const auto refused = [](std::vector<std::string> words, const char* part) {
     expect_line(refusal([&] { settings_of(words); }), part);
   };
-  refused({"tolerance", "1e-10"}, "takes no tolerance: leave `tolerance 1e-10` away, or use the solver cg or gauss_seidel");
+  refused({"tolerance", "1e-10"}, "takes no tolerance: leave `tolerance 1e-10` away, or use the solver amg, cg or gauss_seidel");
   refused({"shear_viscous", "yes", "model", "darcy_grid", "1", "1", "1"}, "darcy_grid takes no shear viscous forces");
   refused({"torques", "no", "model", "darcy_grid", "1", "1", "1"}, "darcy_grid takes no torques");
   refused({"drag", "di_felice"}, "pfv takes no drag: leave `drag di_felice` away, or use the model darcy_grid");

@@ -74,7 +74,7 @@ TEST(SolverChoice, WhatASolverCannotDoIsRefusedAndThoseThatCanAreNamed) {
         refusal([&](Options& o) { o.solver = kind, o.precision = Precision::mixed; });
     EXPECT_TRUE(contains(mixed, "use the solver supernodal")) << mixed;
     const std::string tolerance = refusal([&](Options& o) { o.solver = kind, o.tolerance = 1e-6; });
-    EXPECT_TRUE(contains(tolerance, "cg or gauss_seidel")) << tolerance;
+    EXPECT_TRUE(contains(tolerance, "amg, cg or gauss_seidel")) << tolerance;
   }
   const std::string ordering = refusal([](Options& o) {
     o.solver = SolverKind::cg, o.ordering = OrderingKind::metis;
@@ -93,6 +93,8 @@ TEST(SolverChoice, ItIsSaidWhichCodeOrderedFactoredAndSolved) {
   EXPECT_EQ(made_of(SolverKind::tacho, OrderingKind::automatic),
             "ordered by METIS (metis), analysed by Tacho, factored by Tacho, solved by Tacho; called "
             "through Amesos2");
+  EXPECT_EQ(made_of(SolverKind::amg, OrderingKind::automatic),
+            "preconditioned by hypre's BoomerAMG, solved by pfv");
   EXPECT_EQ(made_of(SolverKind::cg, OrderingKind::automatic), "preconditioned by pfv, solved by pfv");
 }
 

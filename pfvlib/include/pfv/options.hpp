@@ -22,19 +22,20 @@ struct Names<ConductanceLaw> {
 
 /// Direct solvers behind Amesos2: supernodal (`automatic`), CHOLMOD's symbolic factorisation with numeric
 /// one and solves of this library; cholmod, CHOLMOD's own; tacho, Trilinos' sparse Cholesky; klu2, its plain
-/// sparse LU; mumps (unless CMake's PFV_WITH_MUMPS is off). Iterative ones: cg, conjugate gradients with
-/// incomplete Cholesky; gauss_seidel with over-relaxation.
-enum class SolverKind { automatic, supernodal, cholmod, tacho, klu2, mumps, cg, gauss_seidel };
+/// sparse LU; mumps (unless CMake's PFV_WITH_MUMPS is off). Iterative ones: amg, conjugate gradients with
+/// hypre's algebraic multigrid; cg, with incomplete Cholesky; gauss_seidel with over-relaxation.
+enum class SolverKind { automatic, supernodal, cholmod, tacho, klu2, mumps, amg, cg, gauss_seidel };
 template <>
 struct Names<SolverKind> {
   static constexpr const char* what = "solver";
-  static constexpr std::array<Named<SolverKind>, 8> all{
+  static constexpr std::array<Named<SolverKind>, 9> all{
       {{SolverKind::automatic, "auto"},
        {SolverKind::supernodal, "supernodal"},
        {SolverKind::cholmod, "cholmod"},
        {SolverKind::tacho, "tacho"},
        {SolverKind::klu2, "klu2"},
        {SolverKind::mumps, "mumps"},
+       {SolverKind::amg, "amg"},
        {SolverKind::cg, "cg"},
        {SolverKind::gauss_seidel, "gauss_seidel"}}};
 };
@@ -138,9 +139,10 @@ struct Options {
   SolverKind solver = SolverKind::automatic;
   OrderingKind ordering = OrderingKind::automatic;
   Precision precision = Precision::full;
-  /// Where cg and gauss_seidel end: residual over right-hand side (2-norms), in (0, 1). Direct solvers
-  /// have none and refuse another than this.
-  double tolerance = 1e-10;
+  /// Where iterative solvers end, in (0, 1), 2-norms: cg and gauss_seidel at this residual over the right-hand side
+  /// (absent: 1e-10), amg at this mass defect of the pores over the flow through them (absent: 1e-7). Direct solvers
+  /// refuse one.
+  std::optional<double> tolerance;
   /// Threads that share a step, 1 ... 64. They change no byte of any result.
   int threads = 1;
   OutsideGrains outside = OutsideGrains::refuse;

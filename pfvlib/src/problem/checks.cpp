@@ -35,7 +35,7 @@ bool may_be_implicit(const Settings& s) {
 
 struct Rule {
   bool (*broken)(const Settings&);
-  const char* message;  ///< {solver}: the name of the one that is used; {background}: those that factor there
+  const char* message;  ///< {solver}: the one that is used; {background}, {implicit}: those that can do it
 };
 
 // Broken by what was said: the message says which of the two to change.
@@ -50,6 +50,9 @@ const Rule rules[]{
     {[](const Settings& s) { return s.options.rebuild_lag > 0 && may_be_implicit(s); },
      "implicit steps factor a matrix with the masses of the grains, which is not done in the background: use "
      "`coupling explicit` or `coupling staged`, or set rebuild_lag to 0"},
+    {[](const Settings& s) { return may_be_implicit(s) && !abilities_of(s.options.solver).implicit_steps; },
+     "the solver {solver} solves no implicit steps: use the solver {implicit}, or `coupling explicit` or `coupling "
+     "staged`"},
     {[](const Settings& s) {
        return s.options.shear_viscous && s.steps.coupling == Coupling::implicit;
      },
@@ -101,7 +104,8 @@ const Rule rules[]{
 std::string filled(std::string message, const Settings& settings) {
   const std::pair<std::string, std::string> blanks[]{
       {"{solver}", name_of(resolved(settings.options.solver))},
-      {"{background}", solvers_with(&SolverAbilities::factors_beside_steps)}};
+      {"{background}", solvers_with(&SolverAbilities::factors_beside_steps)},
+      {"{implicit}", solvers_with(&SolverAbilities::implicit_steps)}};
   for (const auto& [blank, text] : blanks)
     if (const std::size_t at = message.find(blank); at != std::string::npos)
       message.replace(at, blank.size(), text);

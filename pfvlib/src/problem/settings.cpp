@@ -280,6 +280,26 @@ std::vector<Setting> of_method() {
   };
 }
 
+Setting tolerance() {
+  Setting setting = number(row("Solver", "tolerance",
+                               "where an iterative solver ends: residual over right-hand side; of amg mass defect over "
+                               "flow through the pores; auto: ",
+                               {true, true}, any_model),
+                           "tolerance", "auto|T", "", demands::part, option(&Options::tolerance));
+  setting.help += own_tolerances();
+  setting.solvers = &SolverAbilities::is_iterative;
+  setting.read = [number = setting.read](Settings& settings, Words& words) {
+    if (words.take("auto"))
+      settings.options.tolerance.reset();
+    else
+      number(settings, words);
+  };
+  setting.text = [](const Settings& settings) {
+    return settings.options.tolerance ? number_text(*settings.options.tolerance) : "auto";
+  };
+  return setting;
+}
+
 std::vector<Setting> of_solver() {
   Setting solver = choice(row("Solver", "solver", "linear solver; auto: ", both, any_model), "solver",
                           option(&Options::solver));
@@ -291,10 +311,7 @@ std::vector<Setting> of_solver() {
   return {
       solver,
       ordering,
-      of_solvers(number(row("Solver", "tolerance", "residual over right-hand side where the solver ends", both,
-                            any_model),
-                        "tolerance", "T", "", demands::part, option(&Options::tolerance)),
-                 &SolverAbilities::is_iterative),
+      tolerance(),
       of_solvers(choice(row("Solver", "precision",
                             "how the solver keeps its factor: mixed has half as much to read a step and solves to a "
                             "residual of 1e-9",

@@ -2,7 +2,10 @@
 #include "problem/solver_abilities.hpp"
 
 #include "pfv/error.hpp"
+#include "text/number_text.hpp"
 
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,17 +22,23 @@ using Solver = SolverKind;
 using Ordering = OrderingKind;
 
 // Not in the background: what calls the BLAS, which two threads at once may not (Debian's
-// openblas-serial returns wrong factors), and what stays inside Trilinos, which is one thread's at a time.
+// openblas-serial returns wrong factors), what stays inside Trilinos, which is one thread's at a time, and what
+// calls MPI (mumps, amg), which a host may have started for one thread.
 constexpr SolverAbilities table[] = {
     // solver, built, analysed, factored, solved by; own ordering; takes orderings, shares work,
-    // factors beside steps, mixed precision, iterative
-    {Solver::supernodal, true, "CHOLMOD", "pfv", "pfv", Ordering::geometric, true, true, true, true, false},
-    {Solver::cholmod, true, "CHOLMOD", "CHOLMOD", "CHOLMOD", Ordering::geometric, true, false, false, false, false},
-    {Solver::tacho, true, "Tacho", "Tacho", "Tacho", Ordering::metis, true, false, false, false, false},
-    {Solver::klu2, true, "KLU2", "KLU2", "KLU2", Ordering::amd, false, false, false, false, false},
-    {Solver::mumps, has_mumps, "MUMPS", "MUMPS", "MUMPS", Ordering::automatic, false, false, false, false, false},
-    {Solver::cg, true, nullptr, "pfv", "pfv", Ordering::automatic, false, false, true, false, true},
-    {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, true},
+    // factors beside steps, mixed precision, implicit steps, iterative, tolerance
+    {Solver::supernodal, true, "CHOLMOD", "pfv", "pfv", Ordering::geometric, true, true, true, true, true, false, 0.0},
+    {Solver::cholmod, true, "CHOLMOD", "CHOLMOD", "CHOLMOD", Ordering::geometric, true, false, false, false, true,
+     false, 0.0},
+    {Solver::tacho, true, "Tacho", "Tacho", "Tacho", Ordering::metis, true, false, false, false, true, false, 0.0},
+    {Solver::klu2, true, "KLU2", "KLU2", "KLU2", Ordering::amd, false, false, false, false, true, false, 0.0},
+    {Solver::mumps, has_mumps, "MUMPS", "MUMPS", "MUMPS", Ordering::automatic, false, false, false, false, true, false,
+     0.0},
+    {Solver::amg, true, nullptr, "hypre's BoomerAMG", "pfv", Ordering::automatic, false, false, false, false, false,
+     true, 1e-7},
+    {Solver::cg, true, nullptr, "pfv", "pfv", Ordering::automatic, false, false, true, false, true, true, 1e-10},
+    {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, true, true,
+     1e-10},
 };
 
 /// Who makes an ordering for a solver.
@@ -65,6 +74,19 @@ std::string solvers_with(bool SolverAbilities::*ability) {
   std::string text;
   for (std::size_t k = 0; k < names.size(); ++k)
     text += (k == 0 ? "" : k + 1 == names.size() ? " or " : ", ") + names[k];
+  return text;
+}
+
+std::string own_tolerances() {
+  std::map<double, std::string, std::greater<>> solvers;
+  for (const SolverAbilities& solver : table) {
+    if (!solver.is_iterative) continue;
+    std::string& names = solvers[solver.tolerance];
+    names += (names.empty() ? "" : ", ") + std::string(name_of(solver.solver));
+  }
+  std::string text;
+  for (const auto& [tolerance, names] : solvers)
+    text += (text.empty() ? "" : ", ") + detail::number_text(tolerance) + " (" + names + ")";
   return text;
 }
 

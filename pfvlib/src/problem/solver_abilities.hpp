@@ -20,13 +20,15 @@ struct SolverAbilities {
   bool shares_work;           ///< threads share factorisation and solves
   bool factors_beside_steps;  ///< networks may be rebuilt in the background
   bool mixed_precision;
-  bool is_iterative;  ///< ends at a tolerance
+  bool implicit_steps;  ///< solves the matrix of implicit steps, whose entries have any sign
+  bool is_iterative;    ///< ends at a tolerance
+  double tolerance;     ///< where an iterative solver ends where none is said; 0 for the others
 };
 
 /// Of a solver, `automatic` among them. Throws InputError for one that options.hpp does not name.
 const SolverAbilities& abilities_of(SolverKind solver);
 
-/// "cg or gauss_seidel": the solvers of this build with an ability, for messages and tables.
+/// "amg, cg or gauss_seidel": the solvers of this build with an ability, for messages and tables.
 std::string solvers_with(bool SolverAbilities::*ability);
 
 /// Throws InputError for a solver that this build lacks and for an ordering that the solver does not take.
@@ -37,6 +39,9 @@ SolverKind resolved(SolverKind solver);
 OrderingKind resolved(SolverKind solver, OrderingKind ordering);
 
 bool is_iterative(SolverKind solver);
+
+/// Where the iterative solvers end if no tolerance is said, for tables: "1e-08 (amg), 1e-10 (cg, gauss_seidel)".
+std::string own_tolerances();
 
 /// Which code ordered, analysed, factored and solved, in one line.
 std::string made_of(SolverKind solver, OrderingKind ordering);

@@ -12,6 +12,7 @@
 #include "solve/amesos2_cholesky.hpp"
 #include "solve/checked_solver.hpp"
 #include "solve/fill_reducing_ordering.hpp"
+#include "solve/mpi_session.hpp"
 #include "problem/solver_abilities.hpp"
 #include "sparse/sparse_error.hpp"
 
@@ -60,28 +61,6 @@ class KokkosSession {
 };
 
 #ifdef PFV_WITH_MUMPS
-/// MPI for MUMPS, which cannot do without, to the end of the program; that of the host program,
-/// where it has started one.
-class MpiSession {
- public:
-  static void start() { static const MpiSession session; }
-  ~MpiSession() {
-    int is_over = 0;
-    MPI_Finalized(&is_over);
-    if (is_ours_ && !is_over) MPI_Finalize();
-  }
-
- private:
-  MpiSession() {
-    int is_initialized = 0;
-    MPI_Initialized(&is_initialized);
-    if (is_initialized) return;
-    MPI_Init(nullptr, nullptr);
-    is_ours_ = true;
-  }
-  bool is_ours_ = false;
-};
-
 /// Keeps MUMPS' adapter from writing its error codes to standard error beside the exception.
 class QuietErrors {
  public:

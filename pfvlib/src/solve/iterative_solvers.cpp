@@ -43,9 +43,15 @@ void IterativeSolver::solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x)
     fail("the right-hand side is not finite; look at the boundary pressures, fluxes and "
          "velocities");
   }
-  x.setZero();
-  if (!b.isZero(0.0)) iterate(b, x);
+  if (b.isZero(0.0)) {
+    x.setZero();
+    return;
+  }
+  begin(b, x);
+  iterate(b, x);
 }
+
+void IterativeSolver::begin(const Eigen::VectorXd&, Eigen::VectorXd& x) { x.setZero(); }
 
 void IterativeSolver::fail_at(int row) const {
   fail("the matrix is not positive definite at row " + std::to_string(row) +
@@ -57,7 +63,7 @@ void IterativeSolver::fail_after(int iterations, const Eigen::VectorXd& b,
                                  const Eigen::VectorXd& r) const {
   std::ostringstream text;
   text << "no solution after " << iterations << " iterations (the residual is "
-       << r.norm() / b.norm() << " of the right-hand side); use the solver cholmod";
+       << r.norm() / b.norm() << " of the right-hand side); use the solver supernodal";
   fail(text.str());
 }
 
@@ -79,8 +85,28 @@ bool IterativeSolver::is_solved(const Eigen::VectorXd& b, const Eigen::VectorXd&
   return r.norm() <= std::max(tolerance_ * b.norm(), epsilon * std::sqrt(rounding));
 }
 
+void ConjugateGradient::set_out(const Eigen::VectorXd& r) {
+  z_.resize(r.size());
+  precondition(r, z_);
+  direction_ = z_;
+  rz_ = r.dot(z_);
+}
+
+bool ConjugateGradient::advance(Eigen::VectorXd& x, Eigen::VectorXd& r) {
+  product_ = multiply(matrix_, direction_);
+  const double step = rz_ / direction_.dot(product_);
+  if (!(step > 0.0)) return false;
+  x += step * direction_;
+  r -= step * product_;
+  precondition(r, z_);
+  const double next = r.dot(z_);
+  direction_ = z_ + next / rz_ * direction_;
+  rz_ = next;
+  return true;
+}
+
 // Row i of L: L_ij = A_ij - sum_k<j L_ik L_jk / D_k, D_i = L_ii, where A has an entry.
-void ConjugateGradient::factor_values(const SymmetricMatrix& matrix) {
+void IncompleteCholesky::factor_values(const SymmetricMatrix& matrix) {
   keep_values(matrix);
   factor_ = matrix.value;
   inverse_pivot_.resize(size());
@@ -106,7 +132,7 @@ void ConjugateGradient::factor_values(const SymmetricMatrix& matrix) {
 }
 
 /// z = (L D^-1 L^T)^-1 r.
-void ConjugateGradient::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
+void IncompleteCholesky::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
   for (int i = 0; i < size(); ++i) {
     double sum = r[i];
     for (int k = matrix_.row_begin[i]; k < diagonal_[i]; ++k) {
@@ -124,26 +150,15 @@ void ConjugateGradient::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& 
 }
 
 // The recurrence of r drifts away from b - A x: where it says that it is done, begin again from x.
-void ConjugateGradient::iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
-  Eigen::VectorXd r, z(size()), direction, product;
+void IncompleteCholesky::iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  Eigen::VectorXd r;
   int iterations = 0;
   while (!is_solved(b, x, r)) {
     if (iterations >= most_iterations || !r.allFinite()) fail_after(iterations, b, r);
-    precondition(r, z);
-    direction = z;
-    double rz = r.dot(z);
+    set_out(r);
     const double aim = std::max(1e-2 * tolerance_ * b.norm(), 1e-3 * r.norm());
-    for (; iterations < most_iterations && r.norm() > aim; ++iterations) {
-      product = multiply(matrix_, direction);
-      const double step = rz / direction.dot(product);
-      if (!(step > 0.0)) fail_after(iterations, b, r);
-      x += step * direction;
-      r -= step * product;
-      precondition(r, z);
-      const double next = r.dot(z);
-      direction = z + next / rz * direction;
-      rz = next;
-    }
+    for (; iterations < most_iterations && r.norm() > aim; ++iterations)
+      if (!advance(x, r)) fail_after(iterations, b, r);
   }
 }
 

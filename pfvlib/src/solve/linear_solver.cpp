@@ -2,6 +2,7 @@
 #include "solve/linear_solver.hpp"
 
 #include "solve/amesos2_solver.hpp"
+#include "solve/amg_solver.hpp"
 #include "solve/iterative_solvers.hpp"
 #include "problem/solver_abilities.hpp"
 
@@ -10,9 +11,11 @@ namespace pfv {
 std::unique_ptr<LinearSolver> make_solver(const Options& options, std::shared_ptr<Team> team) {
   check(options);
   const SolverKind kind = resolved(options.solver);
+  const double tolerance = options.tolerance.value_or(abilities_of(kind).tolerance);
   switch (kind) {
-    case SolverKind::cg: return std::make_unique<ConjugateGradient>(options.tolerance);
-    case SolverKind::gauss_seidel: return std::make_unique<GaussSeidel>(options.tolerance);
+    case SolverKind::amg: return std::make_unique<AmgSolver>(tolerance);
+    case SolverKind::cg: return std::make_unique<IncompleteCholesky>(tolerance);
+    case SolverKind::gauss_seidel: return std::make_unique<GaussSeidel>(tolerance);
     default:
       if (!team) team = std::make_shared<Team>();
       return make_amesos2_solver(kind, options.ordering, options.precision, std::move(team));

@@ -25,9 +25,12 @@ class LinearSolver {
   virtual void order(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd& coordinates = {}) = 0;
   /// Numeric factorisation; `matrix` has the pattern given to `order`, else SolverError.
   virtual void factor(const SymmetricMatrix& matrix) = 0;
-  /// x = A^-1 b. An x of length n is where mixed precision sets out from; zeros are a good beginning.
+  /// x = A^-1 b. An x of length n is where mixed precision and amg set out from, the last solution of a sequence or
+  /// zeros. With zeros one b gives one x.
   virtual void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;
   virtual std::string name() const = 0;
+  /// Of the last solve, where the solver counts them; else 0.
+  virtual int iterations() const { return 0; }
   /// The team that shares the work from now on. No byte depends on it.
   virtual void share_with(std::shared_ptr<Team> team) { (void)team; }
 };

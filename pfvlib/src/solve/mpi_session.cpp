@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/mpi_session.hpp"
+
+#include <mpi.h>
+
+namespace pfv {
+
+void MpiSession::start() { static const MpiSession session; }
+
+MpiSession::MpiSession() {
+  int is_initialized = 0;
+  MPI_Initialized(&is_initialized);
+  if (is_initialized) return;
+  MPI_Init(nullptr, nullptr);
+  is_ours_ = true;
+}
+
+MpiSession::~MpiSession() {
+  int is_over = 0;
+  MPI_Finalized(&is_over);
+  if (is_ours_ && !is_over) MPI_Finalize();
+}
+
+}  // namespace pfv
