@@ -253,6 +253,10 @@ TEST(Containers, WhatCannotHoldFluidIsRefusedByName) {
   refused(inside_out, "turn its normal");
   refused({plane_face("bottom", {0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}), plane_face("top", {0.1, 0.0, 1.0}, {0.0, 0.0, 1.0}),
            cylinder_face("shell", {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}, 0.5)}, "not square");
+  pfv::Options turning;
+  turning.torques = true;
+  EXPECT_THROW(pfv::Flow(cylinders()[0].container, viscosity_one(), turning), pfv::InputError);
+  EXPECT_NO_THROW(pfv::Flow(wedge(), viscosity_one(), turning));
   const pfv::PackingArrays outside = packing_of({{0.9, 0.4, 0.9, 0.1}});
   try {
     pfv::Flow(wedge(), viscosity_one()).evaluate(outside.view());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pfv/box.hpp"
+#include "pfv/options.hpp"
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -99,5 +100,7 @@ std::optional<Box> box_of(const Container& container);
 /// Throws InputError when the container is open, empty or not convex, a face's name is missing or occurs twice,
 /// its shape or motion is not finite, a cylinder's ends are not square to it, or as `check(Box)` does.
 void check(const Container& container);
+/// Throws InputError for options that need a box, or plane walls.
+void check(const Container& container, const Options& options);
 
 }  // namespace pfv

@@ -124,6 +124,7 @@ Flow::Flow(Container container, Fluid fluid, Options options) {
   check(container);
   check(fluid);
   check(options);
+  check(container, options);
   parts_ = std::make_unique<Parts>(std::move(container), fluid, options);
 }
 
@@ -150,6 +151,7 @@ void Flow::rebuild() { parts_->keeper.discard(true); }
 
 void Flow::set_container(const Container& container) {
   check(container);
+  check(container, parts_->options);
   if (!same_kinds(parts_->container, container)) parts_->keeper.discard(true);
   parts_->container = container;
 }

@@ -225,4 +225,16 @@ void check(const Container& container) {
   check(box_around(container));
 }
 
+void check(const Container& container, const Options& options) {
+  if (options.partition == Partition::yade && !container.is_box)
+    throw InputError("`partition yade` goes with a box alone: take the partition pfv in a container");
+  const std::optional<int> cylinder = cylinder_of(container);
+  if (!cylinder) return;
+  const std::string of = " in a container with a cylinder (" + container.faces[*cylinder].name + ")";
+  if (options.volume_rates == VolumeRates::geometric)
+    throw InputError("there are no `volume_rates geometric`" + of + ": take `volume_rates reciprocal`, the default");
+  if (options.torques)
+    throw InputError("there are no `torques yes`" + of + ": leave them away, or take planes in its place");
+}
+
 }  // namespace pfv
