@@ -321,6 +321,25 @@ void FixPfv::warn_of_empty_box() const {
   error->warning(FLERR, text.str().c_str());
 }
 
+/// A line from which a wrong unit, a box beside the grains or one that is mostly empty is seen. Rank 0.
+void FixPfv::say_what_is_filled() {
+  const pfv::Packing packing = grains_.packing();
+  const std::int64_t outside = flow_->hidden_or_outside() - static_cast<std::int64_t>(flow_->hidden().size());
+  const double volume = pfv::volume_of(container_);
+  const double solid = 4.0 / 3.0 * M_PI * packing.radii.array().cube().sum();
+  char text[300];
+  if (packing.size() == 0)
+    std::snprintf(text, sizeof text, "%s of %.4g m3, no grains yet\n", container_.is_box ? "flow box" : "container", volume);
+  else
+    std::snprintf(text, sizeof text,
+                  "%s of %.4g m3, %ld grains inside, %ld outside, diameters %.4g to %.4g m, grains are %.3g %% of "
+                  "the volume\n",
+                  container_.is_box ? "flow box" : "container", volume,
+                  static_cast<long>(packing.size() - outside), static_cast<long>(outside),
+                  2.0 * packing.radii.minCoeff(), 2.0 * packing.radii.maxCoeff(), 100.0 * solid / volume);
+  print("Fix pfv (id " + std::string(id) + "): " + text);
+}
+
 Eigen::Vector3d FixPfv::gravity() const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < modify->nfix; ++i) {
@@ -351,6 +370,7 @@ void FixPfv::setup(int) {
     prepare_flow(container_);
     check_servos();
     call_flow(flow_step(), false);
+    say_what_is_filled();
     if (since_.steps == 0) since_.grains = grains_.snapshot();
     check_time_step();
     if (plan_) plan_->restart();

@@ -79,6 +79,7 @@ class FixPfv : public Fix {
   void begin_anew_where_moved();
   void remember_state();
   void warn_of_empty_box() const;
+  void say_what_is_filled();
   Eigen::Vector3d gravity() const;
   void after_flow_call();
   void apply_forces();

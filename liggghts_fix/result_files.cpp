@@ -185,12 +185,26 @@ std::vector<double> PfvResultFiles::flux_row(const pfv::FlowModel& flow) const {
   });
 }
 
+namespace {
+
+/// The place of a container that is nearest to one outside it, or nearly so where two walls meet.
+Eigen::Vector3d moved_inside(const pfv::Container& container, Eigen::Vector3d place) {
+  constexpr int rounds = 20;
+  for (int round = 0; round < rounds && !container.is_box; ++round)
+    for (const pfv::ContainerFace& face : container.faces)
+      if (const double distance = face.surface.distance(place); distance < 0.0)
+        place += distance * face.surface.outward_at(place);
+  return place.cwiseMax(container.lower).cwiseMin(container.upper);
+}
+
+}  // namespace
+
 /// A sensor outside the flow box, which may shrink below it, reads the pressure of the nearest place.
 std::vector<double> PfvResultFiles::sensor_row(const pfv::FlowModel& flow) const {
   const pfv::Container& box = flow.container();
   std::vector<double> row{flow.time()};
   for (const Eigen::Vector3d& place : sensors_->places)
-    row.push_back(flow.pressure_at(place.cwiseMax(box.lower).cwiseMin(box.upper)));
+    row.push_back(flow.pressure_at(moved_inside(box, place)));
   return row;
 }
 

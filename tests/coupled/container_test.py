@@ -43,7 +43,9 @@ class Containers(CoupledTest):
 
     def test_primitive_cylinder_and_planes_are_the_container_of_the_command(self):
         write_data(self.folder, in_pipe(packing(8)))
-        self.liggghts(HEAD + PIPE + f"fix flow all pfv {IN_PIPE}\n" + dump("walls.dump") + "run 0\n")
+        said = self.liggghts(HEAD + PIPE + f"fix flow all pfv {IN_PIPE}\n" + dump("walls.dump") + "run 0\n")
+        volume = math.pi * RADIUS**2 * EDGE
+        self.assertIn(f"container of {volume:.4g} m3, {len(in_pipe(packing(8)))} grains inside, 0 outside", said)
         static = self.static(
             {"planes": [{"name": "bottom", "inward_normal": [0, 0, 1], "offset": 0.0},
                         {"name": "top", "inward_normal": [0, 0, -1], "offset": -EDGE}],

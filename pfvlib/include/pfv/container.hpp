@@ -69,7 +69,7 @@ struct Container {
   std::vector<Region> regions;
   std::array<bool, 3> periodic{false, false, false};  ///< boxes alone
   Eigen::Vector3d pressure_gradient = Eigen::Vector3d::Zero();
-  /// The smallest box around it, m. Who moves faces calls `find_bounds`.
+  /// The smallest box around it, m; a flow finds it anew for the faces as they are.
   Eigen::Vector3d lower = Eigen::Vector3d::Zero(), upper = Eigen::Vector3d::Ones();
   bool is_box = false;  ///< made from a Box
 

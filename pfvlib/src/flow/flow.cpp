@@ -122,6 +122,7 @@ const Forces& Flow::Parts::solve_by_choice(const Packing& packing, double dt, co
 
 Flow::Flow(Container container, Fluid fluid, Options options) {
   check(container);
+  find_bounds(container);
   check(fluid);
   check(options);
   check(container, options);
@@ -154,6 +155,7 @@ void Flow::set_container(const Container& container) {
   check(container, parts_->options);
   if (!same_kinds(parts_->container, container)) parts_->keeper.discard(true);
   parts_->container = container;
+  find_bounds(parts_->container);
 }
 
 void Flow::set_retriangulation(StrainMeasure measure, double strain) {

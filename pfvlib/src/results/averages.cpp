@@ -121,8 +121,9 @@ double pressure_at(const BuiltNetwork& built, const Solution& solution,
   const Eigen::Vector3d relative = place - built.network.origin;
   bool within = built.network.cells() > 0 && (relative.array() >= 0.0).all() &&
                 (relative.array() <= spheres.edges.array()).all();
+  const double round_off = -1e-9 * spheres.edges.maxCoeff();
   for (const WallSurface& wall : spheres.walls)  // a plane normal to an axis is a bound of the edges
-    within = within && (wall.axis >= 0 || wall.surface.distance(relative) >= 0.0);
+    within = within && (wall.axis >= 0 || wall.surface.distance(relative) >= round_off);
   if (!within)
     throw InputError("no pressure at a place outside the container (or in one without grains)");
   const int cell = locate(built.network, spheres, relative, 0);
