@@ -8,6 +8,7 @@
 #include "support/containers.hpp"
 #include "support/motions.hpp"
 
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <utility>
 
@@ -201,32 +202,42 @@ TEST(Containers, ANoSlipShellThatTurnsTakesTheGrainsAlong) {
   }
 }
 
-TEST(Containers, RandomOnesCloseAndBalance) {
+// What is refused is so for a reason that is said. PFV_CONTAINERS=5000 tries as many.
+TEST(Containers, RandomOnesCloseAndBalanceOrAreRefusedWithAReason) {
+  const char* given = std::getenv("PFV_CONTAINERS");
+  const int containers = given ? std::atoi(given) : 150;
   Random random(11);
-  for (int number = 0; number < 150; ++number) {
-    const bool round = number % 5 == 0;
-    const pfv::Container container =
+  int refused = 0;
+  for (int number = 0; number < containers; ++number) {
+    const bool round = number % 3 == 0;
+    pfv::Container container =
         round ? cylinder(random.in_cube() + Eigen::Vector3d(0.01, 0.0, 0.0), random.in_cube(-5.0, 5.0),
                          random(0.2, 2.0), random(0.2, 3.0))
               : random_polyhedron(random);
     const double size = std::cbrt(pfv::volume_of(container));
-    const int count = round ? 60 + static_cast<int>(random(0.0, 100.0)) : 1 + static_cast<int>(random(0.0, 80.0));
-    const pfv::PackingArrays packing = spheres_in(container, count, 0.12 * size, random);
-    pfv::Container open = driven(container, container.faces[0].name, container.faces[1].name);
-    pfv::Flow flow(open, viscosity_one());
+    const int count = 1 + static_cast<int>(random(0.0, 120.0)) + (round ? 9 : 0);
+    const pfv::PackingArrays packing = spheres_in(container, count, random(0.02, 0.3) * size, random);
+    container = driven(container, container.faces[0].name, container.faces[1].name,
+                       random() < 0.5 ? pfv::Wall::no_slip : pfv::Wall::symmetry);
+    pfv::Flow flow(container, viscosity_one());
     try {
       flow.evaluate(packing.view());
     } catch (const pfv::Error& error) {
-      EXPECT_TRUE(round) << number << ": " << error.what();
+      const std::string text = error.what();
+      const bool expected = text.find("cut off") != std::string::npos || text.find("too far apart") != std::string::npos ||
+                            (round && text.find("cylinder") != std::string::npos);
+      EXPECT_TRUE(expected) << number << ": " << text;
+      ++refused;
       continue;
     }
     const pfv::Report report = flow.report();
-    EXPECT_LT(report.force_balance_error, 1e-9) << number;
+    EXPECT_LT(report.force_balance_error, 1e-10) << number;
     EXPECT_LT(std::abs(report.mass_error), 1e-8) << number;
-    const Stages s = stages_of(packing, open);
-    EXPECT_NEAR(sum(s.throats.pore_volume) / pfv::volume_of(container), 1.0, 1e-10) << number;
+    EXPECT_NEAR(flow.pore_volumes().sum(), sum(stages_of(packing, container).throats.pore_fluid_volume), 1e-10) << number;
+    EXPECT_NEAR(sum(stages_of(packing, container).throats.pore_volume) / pfv::volume_of(container), 1.0, 1e-10) << number;
     EXPECT_TRUE(flow.forces().total.allFinite()) << number;
   }
+  EXPECT_LT(refused, containers / 20);
 }
 
 TEST(Containers, WhatCannotHoldFluidIsRefusedByName) {

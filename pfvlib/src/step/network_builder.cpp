@@ -4,6 +4,7 @@
 #include "network/pore_network.hpp"
 #include "pfv/error.hpp"
 #include "physics/yade_partition.hpp"
+#include "step/solvability.hpp"
 #include "work/phase_clock.hpp"
 
 namespace pfv {
@@ -34,6 +35,7 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Probl
     for (std::size_t t = 0; t < fresh->throats.conductance_factor.size(); ++t)
       fresh->conductances.value[t] *= fresh->throats.conductance_factor[t];
     fresh->bases = measure_bases(fresh->network, fresh->boundaries, spheres);
+    refuse_open_pores(*fresh);
     fresh->strain_volume = strain_volumes(fresh->network, fresh->throats, spheres);
   }
   fresh->unknowns = number_unknowns(fresh->network, fresh->boundaries, container);

@@ -2,6 +2,7 @@
 // Boundaries and motions that leave the pressure undetermined: refused before anything is solved.
 #include "step/solvability.hpp"
 
+#include "network/facets.hpp"
 #include "pfv/error.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
@@ -58,6 +59,45 @@ std::vector<int> spheres_at(const PoreNetwork& network, int throat) {
 }
 
 }  // namespace
+
+namespace {
+
+/// What the surface of each pore leaves open: the sum of its area vectors, m².
+Eigen::Matrix3Xd openings_in(const BuiltNetwork& built) {
+  const PoreNetwork& network = built.network;
+  Eigen::Matrix3Xd open = Eigen::Matrix3Xd::Zero(3, network.pores());
+  for (int t = 0; t < network.throats(); ++t)
+    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
+      const Eigen::Vector3d area = area_vector(network.facet_vertices[f], built.vertices);
+      open.col(network.throat_pores[t][0]) += area;
+      open.col(network.throat_pores[t][1]) -= area;
+    }
+  for (int b = 0; b < built.bases.size(); ++b)
+    if (built.bases.face[b] >= 0) open.col(built.bases.pore[b]) += built.bases.load(b).head<3>();
+  return open;
+}
+
+}  // namespace
+
+void refuse_open_pores(const BuiltNetwork& built) {
+  constexpr double round_off = 1e-9;
+  const auto& walls = built.vertices.walls;
+  if (built.network.pores() == 0 ||
+      std::all_of(walls.begin(), walls.end(), [](const WallSurface& wall) { return wall.is_plane(); }))
+    return;
+  const Eigen::VectorXd open = openings_in(built).colwise().norm();
+  const std::vector<double>& areas = built.geometry.areas;
+  int pore = 0;
+  const double worst = open.maxCoeff(&pore) / *std::max_element(areas.begin(), areas.end());
+  double volume = 0.0;
+  for (const double own : built.throats.pore_volume) volume += own;
+  if (worst <= round_off && std::abs(volume / built.geometry.volume - 1.0) <= round_off) return;
+  const std::vector<int> spheres = spheres_around(built, {pore});
+  throw InputError("the spheres are too few, or too unlike, for a cylinder: pores reach around its axis (near " +
+                       place_of(built, pore) + ", between " + sphere_list(built.grains.spheres.ids, spheres) +
+                       "); take planes around it in the place of the cylinder, or more spheres",
+                   culprits_of(built, spheres, {pore}));
+}
 
 void refuse_undetermined(const Problem& problem, bool moving) {
   const auto& [container, fluid, options, team] = problem;

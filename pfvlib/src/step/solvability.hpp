@@ -15,4 +15,8 @@ void refuse_undetermined(const Problem& problem, bool moving);
 void refuse_isolated(const BuiltNetwork& built, const Solution& solution,
                      const std::vector<Isolated>& held);
 
+/// Throws InputError where the pores at a round wall do not close: what the cells beside it are swept from then
+/// reaches around the axis. Does nothing for plane walls. Cost: a pass over the facets.
+void refuse_open_pores(const BuiltNetwork& built);
+
 }  // namespace pfv
