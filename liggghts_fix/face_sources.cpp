@@ -43,6 +43,13 @@ constexpr double planarity = 1e-6;
 
 char axis_name(int number) { return "xyz"[number / 2]; }
 
+/// The same plane with the fluid on its other side.
+pfv::Surface turned(pfv::Surface plane) {
+  plane.normal = -plane.normal;
+  plane.offset = -plane.offset;
+  return plane;
+}
+
 MeshModuleStress* stress_of(FixMeshSurface* mesh) {
   return mesh ? dynamic_cast<MeshModuleStress*>(mesh->get_module("stress")) : nullptr;
 }
@@ -143,18 +150,18 @@ std::vector<Eigen::Vector3d> PfvFaceSources::pivots() const {
   return pivots;
 }
 
-void PfvFaceSources::place(int number, pfv::ContainerFace& face) const {
+void PfvFaceSources::set_motion(int number, pfv::ContainerFace& face) const {
   const pfv::ContainerFace& shape = shapes_[number];
-  face.surface = shape.surface;
-  if (outwards_[number] < 0.0) {
-    face.surface.normal = -shape.surface.normal;
-    face.surface.offset = -shape.surface.offset;
-  }
   face.velocity = shape.velocity;
   face.angular_velocity = shape.angular_velocity;
   face.pivot = shape.pivot;
   const int axis = axis_of(number);
   face.guide = axis >= 0 ? Eigen::Vector3d(Eigen::Vector3d::Unit(axis)) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+pfv::Surface PfvFaceSources::surface(int number) const {
+  const pfv::Surface& surface = shapes_[number].surface;
+  return outwards_[number] < 0.0 ? turned(surface) : surface;
 }
 
 /// A wall does not say on which side of it the fluid is: the grains do, when they are first seen.
@@ -184,8 +191,7 @@ void PfvFaceSources::read_plane(int number) {
   pfv::ContainerFace& shape = shapes_[number];
   shape = plane_of_mesh(meshes_[number], world, "face " + names_[number] + ": mesh '" + sources_[number].fix_id + "' ");
   if (shape.surface.normal.dot(before) >= 0.0) return;
-  shape.surface.normal = -shape.surface.normal;
-  shape.surface.offset = -shape.surface.offset;
+  shape.surface = turned(shape.surface);
 }
 
 void PfvFaceSources::read_mesh(int number) {

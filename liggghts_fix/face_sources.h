@@ -42,8 +42,9 @@ class PfvFaceSources : protected Pointers {
   const std::vector<double>& positions() const { return positions_; }
   /// Places that move with the faces of a container: m.
   std::vector<Eigen::Vector3d> pivots() const;
-  /// A container's face: its shape and motion; after `follow_grains`.
-  void place(int number, pfv::ContainerFace& face) const;
+  /// Of a container's face: how it moves, and its shape with the fluid inside; the latter after `follow_grains`.
+  void set_motion(int number, pfv::ContainerFace& face) const;
+  pfv::Surface surface(int number) const;
   /// A box's face with its motion in its own plane, which a mesh's nodes have as parts of one rigid body.
   pfv::FaceCondition condition(int number, pfv::Wall wall, pfv::Boundary boundary) const;
 

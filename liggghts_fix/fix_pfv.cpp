@@ -24,7 +24,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <sstream>
 
 namespace LAMMPS_NS {
 
@@ -162,50 +161,6 @@ void FixPfv::check_other_fixes() {
     stop(FLERR, "counts buoyancy twice with `fix buoyancy`; remove that or set `buoyancy no`");
 }
 
-// -------------------------------------------------------------------------------------- boundaries
-
-/// Evaluates the variables; of one that is missing, check_variables has told.
-void FixPfv::update_bound_numbers() {
-  if (settings_.bindings.empty()) return;
-  modify->clearstep_compute();
-  for (const PfvBinding& binding : settings_.bindings) {
-    const int index = input->variable->find(const_cast<char*>(binding.variable.c_str()));
-    bound_number(settings_, binding) = input->variable->compute_equal(index);
-  }
-  modify->addstep_compute(update->ntimestep +
-                          (adapts() ? 1 : std::max(1, settings_.steps.couple_every - since_.steps)));
-}
-
-namespace {
-
-pfv::Box box_with_conditions(const PfvSettings& settings, const PfvFaceSources& sources) {
-  pfv::Box box = settings.box;
-  for (int number = 0; number < pfv::face_count; ++number) {
-    pfv::FaceCondition& face = box.faces[number];
-    if (const auto& cosine = settings.profiles[number]) {
-      face.boundary.value = cosine->mean;
-      face.boundary.profile = [cosine = *cosine](const Eigen::Vector3d& place, double) {
-        return cosine.mean + cosine.amplitude * std::cos(M_PI * place[cosine.axis] / cosine.half_period);
-      };
-    }
-    face = sources.condition(number, face.wall, face.boundary);
-  }
-  return box;
-}
-
-}  // namespace
-
-/// Boundary conditions and velocities of the faces; their positions follow in place_faces.
-pfv::Container FixPfv::current_container() {
-  update_bound_numbers();
-  if (!settings_.container) return box_with_conditions(settings_, faces_);
-  pfv::Container container;
-  container.faces = settings_.faces;
-  container.regions = settings_.box.regions;
-  for (int number = 0; number < container.face_count(); ++number) faces_.place(number, container.faces[number]);
-  return container;
-}
-
 // ------------------------------------------------------------------------------------- flow calls
 
 /// Collects the grains and the places of the faces; collective.
@@ -214,29 +169,6 @@ void FixPfv::read_host() {
   bodies_.apply(groups_, settings_.options.buoyancy && !settings_.fluid.gravity.isZero(0.0), grains_);
   everywhere([&] { faces_.read(); });
   pistons_ = faces_.pistons(needs_forces());
-}
-
-/// Completes the container on rank 0, where the grains are.
-void FixPfv::place_faces(pfv::Container& container) {
-  const pfv::Packing packing = grains_.packing();
-  faces_.follow_grains(packing.positions, packing.radii);
-  if (settings_.container) {
-    for (int number = 0; number < container.face_count(); ++number) {
-      pfv::ContainerFace& face = container.faces[number];
-      const Eigen::Vector3d velocity = face.velocity;  // that of several steps may be a mean
-      faces_.place(number, face);
-      face.velocity = velocity;
-    }
-    pfv::Container whole = pfv::container_of(container.faces);
-    whole.regions = container.regions;
-    container = std::move(whole);
-    return;
-  }
-  pfv::Box box = *pfv::box_of(container);
-  for (const pfv::Face face : pfv::all_faces)
-    (pfv::is_upper(face) ? box.upper : box.lower)[pfv::axis_of(face)] =
-        faces_.positions()[static_cast<int>(face)];
-  container = box;
 }
 
 /// A flow keeps its fluid for life: where gravity or viscosity have changed since the last run,
@@ -293,51 +225,6 @@ void FixPfv::remember_state() {
     if (packing.size() > 0) faces_.follow_grains(packing.positions, packing.radii);
     if (flow_) left_ = left_state(packing, faces_.positions());
   });
-}
-
-/// Grains that are there but all outside: most likely the box or the units are not those meant. A box
-/// that grains will be poured into has none yet, and is left in peace. Rank 0.
-void FixPfv::warn_of_empty_box() const {
-  const pfv::Packing packing = grains_.packing();
-  const auto is_inside = [&](Eigen::Index k) {
-    return std::all_of(container_.faces.begin(), container_.faces.end(), [&](const pfv::ContainerFace& face) {
-      return face.surface.distance(packing.positions.col(k)) > 0.0;
-    });
-  };
-  bool any = packing.size() == 0;
-  for (Eigen::Index k = 0; k < packing.size() && !any; ++k) any = is_inside(k);
-  if (any) return;
-  std::ostringstream text;
-  const auto reach = [&text](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-    for (int axis = 0; axis < 3; ++axis)
-      text << (axis ? ", " : "") << "xyz"[axis] << " from " << from[axis] << " to " << to[axis];
-  };
-  text << "Fix pfv (id " << id << "): all " << packing.size() << " grains of the group are outside the "
-       << "flow box, the fluid acts on none; the box reaches ";
-  reach(container_.lower, container_.upper);
-  text << " m, the centres of the grains ";
-  reach(packing.positions.rowwise().minCoeff(), packing.positions.rowwise().maxCoeff());
-  text << " m";
-  error->warning(FLERR, text.str().c_str());
-}
-
-/// A line from which a wrong unit, a box beside the grains or one that is mostly empty is seen. Rank 0.
-void FixPfv::say_what_is_filled() {
-  const pfv::Packing packing = grains_.packing();
-  const std::int64_t outside = flow_->hidden_or_outside() - static_cast<std::int64_t>(flow_->hidden().size());
-  const double volume = pfv::volume_of(container_);
-  const double solid = 4.0 / 3.0 * M_PI * packing.radii.array().cube().sum();
-  char text[300];
-  if (packing.size() == 0)
-    std::snprintf(text, sizeof text, "%s of %.4g m3, no grains yet\n", container_.is_box ? "flow box" : "container", volume);
-  else
-    std::snprintf(text, sizeof text,
-                  "%s of %.4g m3, %ld grains inside, %ld outside, diameters %.4g to %.4g m, grains are %.3g %% of "
-                  "the volume\n",
-                  container_.is_box ? "flow box" : "container", volume,
-                  static_cast<long>(packing.size() - outside), static_cast<long>(outside),
-                  2.0 * packing.radii.minCoeff(), 2.0 * packing.radii.maxCoeff(), 100.0 * solid / volume);
-  print("Fix pfv (id " + std::string(id) + "): " + text);
 }
 
 Eigen::Vector3d FixPfv::gravity() const {
@@ -416,17 +303,6 @@ void FixPfv::advance() {
   since_.time = 0.0;
   if (adapts()) plan_next_solve(steps);
   after_flow_call();
-}
-
-void FixPfv::use_mean_velocities_of_faces() {
-  for (int number = 0; number < container_.face_count(); ++number) {
-    if (settings_.sources[number].kind != PfvFaceSource::Kind::mesh) continue;
-    Eigen::Vector3d& velocity = container_.faces[number].velocity;
-    if (settings_.container)
-      velocity = (faces_.pivots()[number] - since_.pivots[number]) / since_.time;
-    else
-      velocity[number / 2] = (faces_.positions()[number] - since_.face_positions[number]) / since_.time;
-  }
 }
 
 void FixPfv::after_flow_call() {
