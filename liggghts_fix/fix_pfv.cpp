@@ -332,9 +332,9 @@ void FixPfv::apply_forces() {
 void FixPfv::push_meshes() {
   if (comm->me != 0 || !faces_.any_mesh()) return;
   std::vector<Eigen::Vector3d> forces = flow_->face_forces();
-  const std::vector<Eigen::Vector3d>& slope = plan_ ? plan_->interval().held().face_slope : forces;
   if (const double trend = steps_of_trend(); trend != 0.0)
-    for (std::size_t f = 0; f < forces.size(); ++f) forces[f] += trend * slope[f];
+    for (std::size_t f = 0; f < forces.size(); ++f)
+      forces[f] += trend * plan_->interval().held().face_slope[f];
   faces_.push_meshes(forces);
 }
 

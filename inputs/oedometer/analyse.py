@@ -59,6 +59,10 @@ class Run:
     def settlement(self):
         return self.strain / self.figures["dry_strain"]
 
+    def late(self):
+        """End of the comparison: of a run that was cut short its own."""
+        return min(LATE, self.T[-1], self.T_lid[-1])
+
     def at(self, T_v):
         """Row of the profile nearest to T_v, and its own T_v."""
         row = int(np.argmin(abs(self.T - T_v)))
@@ -81,7 +85,7 @@ def rms(difference):
 def compare(run):
     """The figures of the comparison, without judging them."""
     f = run.figures
-    times = np.linspace(EARLY, LATE, 1000)
+    times = np.linspace(EARLY, run.late(), 1000)
     middle = np.interp(times, run.T, run.middle())
     settled = np.interp(times, run.T_lid, run.settlement())
     late = run.strain[run.T_lid >= min(2.5, 0.98 * run.T_lid[-1])].mean()
@@ -128,15 +132,16 @@ def judge(run, figures):
     rows = [
         ("p(H/2): rms difference from Terzaghi / load", figures["p_rms"],
          f"<= {limits['p_rms']}", figures["p_rms"] <= limits["p_rms"]),
-        ("U: rms difference from Terzaghi", figures["U_rms"],
-         f"<= {limits['U_rms']}", figures["U_rms"] <= limits["U_rms"]),
         ("U: rms difference from the uneven layer", figures["U_rms_uneven"],
          f"<= {limits['U_rms_uneven']}", figures["U_rms_uneven"] <= limits["U_rms_uneven"]),
         (f"largest p(H/2) / load before T_v = {EARLY}", figures["p_early_max"],
          f"{low} .. {high}", low <= figures["p_early_max"] <= high),
-        ("final strain / dry strain - 1", figures["strain_error"],
-         f"within {limits['strain']}", abs(figures["strain_error"]) <= limits["strain"]),
     ]
+    if run.late() >= 0.99 * LATE:  # a shorter run has not settled but for its drained layers, which Terzaghi has not
+        rows.insert(1, ("U: rms difference from Terzaghi", figures["U_rms"],
+                        f"<= {limits['U_rms']}", figures["U_rms"] <= limits["U_rms"]))
+        rows.append(("final strain / dry strain - 1", figures["strain_error"],
+                     f"within {limits['strain']}", abs(figures["strain_error"]) <= limits["strain"]))
     limit = figures["time_step_limit"]
     if run.figures["explicit"]:
         rows.append(("time step / viscous limit of this sample", run.figures["time_step"] / limit,
