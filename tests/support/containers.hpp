@@ -52,6 +52,19 @@ inline pfv::Container frustum(int sides, double slope) {
   return pfv::container_of(faces);
 }
 
+/// A regular prism about the z axis from z = 0, with a corner on the x axis.
+inline pfv::Container prism(int sides, double apothem, double height) {
+  std::vector<pfv::ContainerFace> faces;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2.0 * pi * (i + 0.5) / sides;
+    const Eigen::Vector3d out(std::cos(angle), std::sin(angle), 0.0);
+    faces.push_back(plane_face("side" + std::to_string(i), out, apothem * out));
+  }
+  faces.push_back(plane_face("bottom", {0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}));
+  faces.push_back(plane_face("top", {0.0, 0.0, 1.0}, {0.0, 0.0, height}));
+  return pfv::container_of(faces);
+}
+
 /// Four sides that meet in a point at the bottom.
 inline pfv::Container pyramid() {
   std::vector<pfv::ContainerFace> faces;
