@@ -56,7 +56,8 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
 
 void Flow::Parts::begin_solution(const BuiltNetwork& built, double dt, bool commit) {
   solution.container = container;
-  solution.geometry = geometry_of(container, built.network.origin);
+  solution.geometry = same_shape(container, built.container) ? built.geometry
+                                                             : geometry_of(container, built.network.origin);
   solution.time = commit ? memory.time + dt : memory.time;
   solution.dt = dt;
   solution.stages = 1;

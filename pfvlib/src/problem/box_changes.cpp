@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pfv {
@@ -25,6 +26,16 @@ bool same_kinds(const Container& a, const Container& b) {
         a.faces[f].boundary.kind != b.faces[f].boundary.kind)
       return false;
   return true;
+}
+
+bool same_shape(const Container& a, const Container& b) {
+  const auto same = [](const ContainerFace& one, const ContainerFace& other) {
+    const Surface &s = one.surface, &t = other.surface;
+    return s.kind == t.kind && s.normal == t.normal && s.offset == t.offset && s.axis == t.axis &&
+           s.point == t.point && s.radius == t.radius;
+  };
+  return a.is_box == b.is_box && a.lower == b.lower && a.upper == b.upper &&
+         std::equal(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(), same);
 }
 
 void require_time_step(double dt, bool commit) {

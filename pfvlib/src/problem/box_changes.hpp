@@ -9,6 +9,9 @@ namespace pfv {
 /// more, what was derived from one is of no use for the other.
 bool same_kinds(const Container& a, const Container& b);
 
+/// Whether their faces have the same places and shapes, to the last bit.
+bool same_shape(const Container& a, const Container& b);
+
 /// Throws InputError unless `dt` (s) can be stepped over.
 void require_time_step(double dt, bool commit);
 

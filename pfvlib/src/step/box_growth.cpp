@@ -6,7 +6,9 @@ namespace pfv {
 BoxGrowth growth_of(const Container& container, const ContainerGeometry& present, const BuiltNetwork& built,
                     double ahead) {
   const Matrix6Xd& as_built = built.geometry.loads;
-  return {geometry_after(container, ahead, built.network.origin).loads - as_built, present.loads - as_built};
+  const Matrix6Xd now = present.loads - as_built;
+  if (!any_face_moves(container)) return {now, now};
+  return {geometry_after(container, ahead, built.network.origin).loads - as_built, now};
 }
 
 double rate_beyond(const BoxGrowth& growth, const Motion& motion) {

@@ -55,7 +55,8 @@ struct KeptOperators {
 /// All that is derived from one packing and kept until the next triangulation.
 struct BuiltNetwork {
   ActiveGrains grains;
-  ContainerGeometry geometry;  ///< of the container that it was built in, about the network's origin
+  Container container;         ///< as it was then
+  ContainerGeometry geometry;  ///< of it, about the network's origin
   PoreNetwork network;
   Spheres vertices;  ///< what the network's vertices stand for: the grains, or those and their images
   PoreBoundaries boundaries;

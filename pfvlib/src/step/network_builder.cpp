@@ -17,6 +17,7 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Probl
   {
     const PhaseClock clock(work.seconds.triangulate);
     fresh->grains = select_grains(packing, container, options.outside);
+    fresh->container = container;
     fresh->geometry = geometry_of(container, container.lower);
     PoreSpace space = build_network(fresh->grains.spheres, container.lower);
     fresh->network = std::move(space.network);
