@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace pfv {
@@ -144,6 +145,8 @@ struct Box {
   bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
 };
 
+/// Throws InputError, which begins with `where`, for a value that is not finite.
+void check(const Boundary& boundary, const std::string& where);
 /// Throws InputError when the box is flat, inverted or not finite, or when a boundary value, a face
 /// velocity, a patch or a region is not finite, inverted or outside its face or the box.
 void check(const Box& box);

@@ -95,7 +95,7 @@ class ThroatLoads {
     first_ = m_.network.throat_facets[t];
     last_ = m_.network.throat_facets[t + 1];
     const Eigen::Vector3d normal = m_.throats.normal.col(t);
-    const bool rubs_on_wall = m_.parts.viscous && has_rubbing_wall();
+    const bool rubs_on_wall = m_.parts.wall_moments && m_.parts.viscous && has_rubbing_wall();
     if (m_.parts.moments || rubs_on_wall) measure(normal);
     if (m_.parts.moments && m_.parts.viscous) find_couple(normal);
     for (int f = first_; f < last_; ++f)
@@ -308,6 +308,7 @@ ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
   const Makings makings{network, vertices, throats, shares, spheres, parts};
   ForceMatrix matrix;
   matrix.spheres = spheres;
+  matrix.wall_moments = parts.wall_moments || parts.moments;
   find_pattern(matrix, makings, team);
   matrix.value.setZero(6, matrix.row_begin.back());
   std::vector<Vector6d> loads;

@@ -19,6 +19,7 @@ namespace pfv {
 /// of one pore gives.
 struct ForceMatrix {
   int spheres = 0;
+  bool wall_moments = false;  ///< it has those on walls
   std::vector<int> row_begin{0};
   std::vector<int> pore;
   Matrix6Xd value;
@@ -26,10 +27,11 @@ struct ForceMatrix {
   int rows() const { return static_cast<int>(row_begin.size()) - 1; }
 };
 
-/// `moments`: where forces act besides; without them those on spheres act at their centres, as in the papers. Those
-/// on walls act where they act in any case, so that a wall that turns takes its share along.
+/// `moments`: where forces act besides; without them those on spheres act at their centres, as in
+/// the papers. `wall_moments`: those on walls act where they lie, so that a wall that turns takes
+/// its share along.
 struct ForceParts {
-  bool pressure = true, viscous = true, moments = true;
+  bool pressure = true, viscous = true, moments = true, wall_moments = false;
 };
 
 /// Share of its throat's viscous force that each vertex of each facet takes; they add up to 1 over a

@@ -95,10 +95,9 @@ Eigen::Vector3d facet_middle(const std::array<Vertex, 3>& facet, const Spheres& 
   const double height = spheres.distance(a, wall_number(facet[2]));
   if (is_wall(facet[1])) {
     const WallPair walls(a, facet[1], facet[2], spheres);
-    if (walls.c != 0.0) return middle_of_kite(start, walls);
+    return walls.c == 0.0 ? Eigen::Vector3d(start + 0.5 * (walls.u * second + height * third))
+                          : middle_of_kite(start, walls);
   }
-  if (is_wall(facet[1]))
-    return start + 0.5 * (spheres.distance(a, wall_number(facet[1])) * second + height * third);
   // two triangles: both centres and the foot of the second, the first centre and both feet
   const double other = spheres.distance(facet[1], wall_number(facet[2]));
   const Eigen::Vector3d first_triangle = (2.0 * second + other * third) / 3.0;

@@ -121,11 +121,10 @@ Halves measure_halves(const PoreNetwork& network, const PoreBoundaries& boundari
   const bool round = touches_round_wall(facet, spheres);
   if (round) measure_round_halves(halves, network, boundaries, spheres, t, f);
   for (int k = 0; k < 3; ++k) {
-    if (is_wall(facet[k]) && round) continue;
-    if (is_wall(facet[k]))
-      add_wall(halves, network, boundaries, spheres, t, f, k);
-    else
+    if (!is_wall(facet[k]))
       add_sphere(halves, network, spheres, t, f, k);
+    else if (!round)
+      add_wall(halves, network, boundaries, spheres, t, f, k);
   }
   return halves;
 }

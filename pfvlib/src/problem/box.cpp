@@ -34,15 +34,6 @@ void check_edge(const Box& box, int axis) {
                      ", flat or inverted: give the lower bound first");
 }
 
-void check(const Boundary& boundary, const std::string& where) {
-  for (const BoundaryKind& one : boundary_kinds) {
-    if (one.kind != boundary.kind) continue;
-    if (one.symbol) require_finite(boundary.value, where + ": " + one.name);
-    return;
-  }
-  throw InputError(where + ": unknown kind of boundary: use sealed, pressure or flux");
-}
-
 // A rectangle may reach beyond its face, since faces move: the part on the face counts.
 void check_extent(const Box& box, const Patch& patch, int axis, int first,
                   const std::string& where) {
@@ -108,6 +99,15 @@ void check_region(const Box& box, std::size_t number) {
 }
 
 }  // namespace
+
+void check(const Boundary& boundary, const std::string& where) {
+  for (const BoundaryKind& one : boundary_kinds) {
+    if (one.kind != boundary.kind) continue;
+    if (one.symbol) require_finite(boundary.value, where + ": " + one.name);
+    return;
+  }
+  throw InputError(where + ": unknown kind of boundary: use sealed, pressure or flux");
+}
 
 void check(const Box& box) {
   for (int axis = 0; axis < 3; ++axis) check_edge(box, axis);

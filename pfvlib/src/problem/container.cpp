@@ -119,20 +119,6 @@ Box box_around(const Container& container) {
   return box;
 }
 
-void check_boundary(const ContainerFace& face) {
-  Box box;
-  box[Face::xlo].boundary = face.boundary;
-  try {
-    check(box);
-  } catch (const InputError& error) {
-    std::string text = error.what();
-    const std::string other = "face xlo";
-    const auto found = text.find(other);
-    if (found != std::string::npos) text.replace(found, other.size(), "face " + face.name);
-    throw InputError(text);
-  }
-}
-
 }  // namespace
 
 Surface Surface::plane(const Eigen::Vector3d& outward_normal, const Eigen::Vector3d& through) {
@@ -217,7 +203,7 @@ void check(const Container& container) {
     return;
   }
   check_shapes(container);
-  for (const ContainerFace& face : container.faces) check_boundary(face);
+  for (const ContainerFace& face : container.faces) check(face.boundary, "face " + face.name);
   if (container.any_periodic() || !container.pressure_gradient.isZero(0.0))
     throw InputError("container: periodic axes and a pressure gradient need a box");
   check_areas(container);

@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/operators.hpp"
 
+#include <algorithm>
+
 namespace pfv {
 
 void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& counts) {
-  if (built.operators.force_matrix) return;
+  const std::vector<ContainerFace>& faces = problem.container.faces;
+  const bool turning = std::any_of(faces.begin(), faces.end(), [](const ContainerFace& face) {
+    return !face.angular_velocity.isZero(0.0);
+  });
+  const bool enough = built.operators.force_matrix && (!turning || built.operators.force_matrix->wall_moments);
+  if (enough) return;
   built.operators.viscous_shares =
       viscous_shares(problem.options.conductance, built.network, built.throats, built.vertices);
   built.operators.force_matrix =
       force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
-                   built.grains.spheres.size(), {true, true, problem.options.torques}, *problem.team);
+                   built.grains.spheres.size(), {true, true, problem.options.torques, turning},
+                   *problem.team);
   ++counts.force_matrix;
 }
 
