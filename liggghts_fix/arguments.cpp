@@ -74,6 +74,12 @@ void take_container_extent(Words& words, PfvFaceSource& source) {
   source.surface.normal = (upper ? 1.0 : -1.0) * Eigen::Vector3d::Unit(axis);
 }
 
+bool source_comes(const Words& words) {
+  for (const char* word : {"plane", "wall", "mesh", "extent"})
+    if (words.begins(word)) return true;
+  return false;
+}
+
 void take_source(Words& words, PfvFaceSource& source, bool container) {
   if (words.take("plane")) {
     source.kind = Source::plane;
@@ -130,7 +136,8 @@ void parse_container_face(Words& words, PfvSettings& settings) {
   for (const pfv::ContainerFace& other : settings.faces)
     if (other.name == face.name) words.fail("face " + face.name + " is given twice");
   PfvFaceSource source;
-  take_source(words, source, true);
+  if (settings.all_walls) face.wall = *settings.all_walls;
+  if (!settings.all_walls || source_comes(words)) take_source(words, source, true);
   take_condition(words, settings.faces.size(), settings, face);
   settings.faces.push_back(face);
   settings.sources.push_back(source);
@@ -151,6 +158,7 @@ void parse_container(Words& words, PfvSettings& settings) {
     if (source.kind != Source::none) words.fail("container must come before the faces");
   settings.container = true;
   settings.sources.clear();
+  if (words.take("walls")) settings.all_walls = take_wall(words).value_or(pfv::Wall::no_slip);
 }
 
 void parse_patch(Words& words, PfvSettings& settings) {
@@ -298,9 +306,6 @@ void check_all(PfvSettings& settings) {
 }
 
 void require_all_faces(const PfvSettings& settings) {
-  if (settings.container && settings.faces.size() < 3)
-    throw pfv::InputError("container: it has " + std::to_string(settings.faces.size()) +
-                          " faces; give each wall `face NAME (plane ... | wall FIX_ID | mesh FIX_ID | extent ...)`");
   if (settings.container) return;
   std::string missing;
   for (const pfv::Face name : pfv::all_faces)

@@ -5,6 +5,7 @@
 #define LMP_PFV_ARGUMENTS_H
 
 #include "pfv/container.hpp"
+#include "pfv/mesh_walls.hpp"
 #include "pfv/settings.hpp"
 
 #include <array>
@@ -22,6 +23,8 @@ struct PfvFaceSource {
   double plane = 0.0;  ///< of a box, m
   std::string fix_id;  ///< of the wall or mesh
   pfv::Surface surface;  ///< plane or, with `extent`, its direction: of a container
+  int part = -1;  ///< which of the walls of a mesh that has several or is round; -1: the mesh is one plane
+  pfv::RoundMeshes round = pfv::RoundMeshes::as_cylinders;
 };
 
 /// p = mean + amplitude cos(pi s / half_period), s the coordinate along `axis`.
@@ -61,6 +64,8 @@ struct PfvSettings : pfv::Settings {
   pfv::Box box;
   /// In place of the box's faces: a container of walls as they are.
   bool container = false;
+  /// The walls that the grains touch are faces of the container, with this condition unless they are named.
+  std::optional<pfv::Wall> all_walls;
   std::vector<pfv::ContainerFace> faces;
   std::vector<PfvFaceSource> sources = std::vector<PfvFaceSource>(6);  ///< of the box's faces, or of these
   std::array<std::optional<PfvCosine>, 6> profiles;
@@ -72,7 +77,7 @@ struct PfvSettings : pfv::Settings {
 };
 
 /// The settings of `fix ID group pfv ...`; `arg` holds the words behind the style. Throws
-/// pfv::InputError.
+/// pfv::InputError. Of a container the walls have still to be found (`find_walls`).
 PfvSettings parse_pfv(int narg, char** arg);
 
 /// Applies one keyword of `fix_modify ID ...` and returns the number of words it took. Throws

@@ -6,6 +6,7 @@
 
 #include "pfv/error.hpp"
 
+#include "domain.h"
 #include "fix_mesh_surface.h"
 #include "fix_wall_gran.h"
 #include "mesh_module_stress.h"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -107,14 +109,17 @@ void PfvFaceSources::bind(const PfvSettings& settings) {
   gliding_.assign(count(), {});
   shapes_.assign(container_ ? count() : 0, {});
   outwards_.assign(container_ ? count() : 0, 0.0);
+  parts_.assign(container_ ? count() : 0, {});
+  read_since_bound_ = false;
   for (int number = 0; number < count(); ++number) {
     const PfvFaceSource& source = sources_[number];
     if (container_) shapes_[number].surface = source.surface;
     if (source.kind == Source::plane && !container_) positions_[number] = source.plane;
     if (source.kind == Source::wall) bind_wall(source, number);
     if (source.kind == Source::mesh) bind_mesh(source, number);
-    // the words tell which way these look
-    if (container_ && (source.kind == Source::plane || source.kind == Source::extent)) outwards_[number] = 1.0;
+    // the words tell which way these look, the rest of the mesh which way its parts do
+    if (container_ && (source.kind == Source::plane || source.kind == Source::extent || source.part >= 0))
+      outwards_[number] = 1.0;
   }
 }
 
@@ -142,6 +147,24 @@ void PfvFaceSources::bind_mesh(const PfvFaceSource& source, int number) {
     fail(number, "fix '" + source.fix_id + "' is no mesh/surface; name a primitive plane with "
                  "`wall FIX_ID`");
   meshes_[number] = mesh;
+  if (source.part >= 0) bind_part(source, number);
+}
+
+/// Which triangles make up the part is found anew: the mesh may be another one of the same name.
+void PfvFaceSources::bind_part(const PfvFaceSource& source, int number) {
+  const std::string what = "mesh '" + source.fix_id + "' ";
+  if (meshes_[number]->get_module("servo"))
+    fail(number, what + "has several walls or is round and moves under a servo: give each wall that a servo moves a "
+                        "plane mesh of its own");
+  const std::vector<pfv::MeshWall> walls = pfv::walls_of_mesh(triangles_of(meshes_[number], world), source.round,
+                                                              "face " + names_[number] + ": " + what);
+  const auto parts = std::count_if(sources_.begin(), sources_.end(), [&](const PfvFaceSource& other) {
+    return other.kind == Source::mesh && other.fix_id == source.fix_id;
+  });
+  if (static_cast<std::ptrdiff_t>(walls.size()) != parts)
+    fail(number, what + "has " + std::to_string(walls.size()) + " walls now and had " + std::to_string(parts) +
+                     " when fix pfv was defined; define fix pfv anew");
+  parts_[number] = walls[source.part];
 }
 
 std::vector<Eigen::Vector3d> PfvFaceSources::pivots() const {
@@ -159,9 +182,30 @@ void PfvFaceSources::set_motion(int number, pfv::ContainerFace& face) const {
   face.guide = axis >= 0 ? Eigen::Vector3d(Eigen::Vector3d::Unit(axis)) : Eigen::Vector3d(Eigen::Vector3d::Zero());
 }
 
+/// Until grains have been seen, the fluid is where the middle of the simulation's box is.
 pfv::Surface PfvFaceSources::surface(int number) const {
   const pfv::Surface& surface = shapes_[number].surface;
-  return outwards_[number] < 0.0 ? turned(surface) : surface;
+  const Eigen::Vector3d middle(0.5 * (domain->boxlo[0] + domain->boxhi[0]), 0.5 * (domain->boxlo[1] + domain->boxhi[1]),
+                               0.5 * (domain->boxlo[2] + domain->boxhi[2]));
+  const double outwards = outwards_[number] != 0.0 ? outwards_[number] : surface.distance(middle);
+  return surface.is_plane() && outwards < 0.0 ? turned(surface) : surface;
+}
+
+std::string PfvFaceSources::described(int number) const {
+  const PfvFaceSource& source = sources_[number];
+  const pfv::Surface& shape = shapes_[number].surface;
+  std::ostringstream text;
+  text.precision(4);
+  text << names_[number] << " (";
+  if (source.kind == Source::wall && source.fix_id != names_[number]) text << "wall '" << source.fix_id << "', ";
+  if (source.kind == Source::mesh && source.fix_id != names_[number]) text << "mesh '" << source.fix_id << "', ";
+  if (source.kind == Source::extent) text << "the grains' extreme, ";
+  text << (shape.is_plane() ? "plane" : "cylinder");
+  if (!shape.is_plane()) text << " of radius " << shape.radius << " m";
+  if (!shape.is_plane() && source.kind == Source::mesh)
+    text << " for flats that lie within " << parts_[number].deviation << " m of it";
+  text << ")";
+  return text.str();
 }
 
 /// A wall does not say on which side of it the fluid is: the grains do, when they are first seen.
@@ -173,9 +217,12 @@ void PfvFaceSources::turn_outwards(const Eigen::Vector3d& middle) {
 }
 
 void PfvFaceSources::read() {
+  read_parts();
   for (int number = 0; number < count(); ++number) {
-    if (meshes_[number] && container_)
+    if (meshes_[number] && container_ && sources_[number].part < 0)
       read_plane(number);
+    else if (meshes_[number] && container_)
+      set_motion_of_mesh(shapes_[number], meshes_[number], world);
     else if (meshes_[number])
       read_mesh(number);
     if (!container_) continue;
@@ -183,6 +230,20 @@ void PfvFaceSources::read() {
     const Eigen::Vector3d far(1.7e3, -2.3e3, 3.1e3);
     positions_[number] = shapes_[number].surface.distance(far);
   }
+}
+
+/// The parts of meshes that move, and once those of all.
+void PfvFaceSources::read_parts() {
+  std::map<FixMeshSurface*, std::vector<pfv::Triangle>> triangles;
+  for (int number = 0; number < count(); ++number) {
+    if (sources_[number].part < 0) continue;
+    FixMeshSurface* mesh = meshes_[number];
+    if (read_since_bound_ && !mesh->triMesh()->isMoving()) continue;
+    if (triangles.count(mesh) == 0) triangles[mesh] = triangles_of(mesh, world);
+    pfv::follow_mesh(parts_[number], triangles[mesh], true);
+    shapes_[number].surface = parts_[number].surface;
+  }
+  read_since_bound_ = true;
 }
 
 /// A plane does not say which way its normal points: the same as before.

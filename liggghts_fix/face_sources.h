@@ -6,6 +6,7 @@
 #include "arguments.h"
 
 #include "pfv/flow_model.hpp"
+#include "pfv/mesh_walls.hpp"
 
 #include "pointers.h"
 
@@ -45,6 +46,8 @@ class PfvFaceSources : protected Pointers {
   /// Of a container's face: how it moves, and its shape with the fluid inside; the latter after `follow_grains`.
   void set_motion(int number, pfv::ContainerFace& face) const;
   pfv::Surface surface(int number) const;
+  /// A container's face in words: its name, source, shape, and how far a mesh strays from it.
+  std::string described(int number) const;
   /// A box's face with its motion in its own plane, which a mesh's nodes have as parts of one rigid body.
   pfv::FaceCondition condition(int number, pfv::Wall wall, pfv::Boundary boundary) const;
 
@@ -74,7 +77,9 @@ class PfvFaceSources : protected Pointers {
   class Fix* find_fix(int number, const std::string& id) const;
   void bind_wall(const PfvFaceSource& source, int number);
   void bind_mesh(const PfvFaceSource& source, int number);
+  void bind_part(const PfvFaceSource& source, int number);
   void read_plane(int number);
+  void read_parts();
   void read_mesh(int number);
   void read_gliding(int number);
   void turn_outwards(const Eigen::Vector3d& middle);
@@ -92,6 +97,8 @@ class PfvFaceSources : protected Pointers {
   };
   std::vector<Gliding> gliding_;
   std::vector<pfv::ContainerFace> shapes_;  ///< of a container
+  std::vector<pfv::MeshWall> parts_;        ///< the walls of meshes that have several or are round
+  bool read_since_bound_ = false;
   std::vector<double> outwards_;            ///< which way a shape's normal points: 1, -1, or 0 as long as unknown
 };
 

@@ -31,7 +31,10 @@ using namespace FixConst;
 
 FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), grains_(lmp), bodies_(lmp) {
   check_environment();
-  everywhere([&] { settings_ = parse_pfv(narg - 3, arg + 3); });
+  everywhere([&] {
+    settings_ = parse_pfv(narg - 3, arg + 3);
+    left_out_ = PfvFoundWalls(lmp).complete(settings_);
+  });
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
 
   scalar_flag = vector_flag = 1;
@@ -251,12 +254,15 @@ void FixPfv::setup(int) {
   container_ = current_container();
   if (since_.steps == 0) since_.face_positions = faces_.positions();
   if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
+  const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, settings_);
   on_root([&] {
     place_faces(container_);
     warn_of_empty_box();
+    for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.packing())) warn_of(warning);
     prepare_flow(container_);
     check_servos();
     call_flow(flow_step(), false);
+    say_what_holds_the_fluid();
     say_what_is_filled();
     if (since_.steps == 0) since_.grains = grains_.snapshot();
     check_time_step();

@@ -12,11 +12,13 @@ FixStyle(pfv,FixPfv)
 #include "arguments.h"
 #include "bodies.h"
 #include "face_sources.h"
+#include "found_walls.h"
 #include "grain_exchange.h"
 #include "left_state.h"
 #include "other_fixes.h"
 #include "restart_record.h"
 #include "result_files.h"
+#include "unseen_walls.h"
 
 #include "pfv/flow_model.hpp"
 #include "pfv/solve_plan.hpp"
@@ -79,6 +81,8 @@ class FixPfv : public Fix {
   void begin_anew_where_moved();
   void remember_state();
   void warn_of_empty_box() const;
+  void warn_of(const std::string& problem) const;
+  void say_what_holds_the_fluid();
   void say_what_is_filled();
   Eigen::Vector3d gravity() const;
   void after_flow_call();
@@ -112,6 +116,7 @@ class FixPfv : public Fix {
   void print(const std::string& text);
 
   PfvSettings settings_;
+  std::vector<std::string> left_out_;  ///< walls that are no faces, each with the reason
   PfvFaceSources faces_;
   PfvGrainExchange grains_;
   PfvBodies bodies_;

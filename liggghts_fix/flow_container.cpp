@@ -15,6 +15,11 @@
 
 namespace LAMMPS_NS {
 
+namespace {
+/// m; grains in water that are larger are most likely millimetres.
+constexpr double largest_usual_grain = 0.3;
+}  // namespace
+
 /// Evaluates the variables; of one that is missing, check_variables has told.
 void FixPfv::update_bound_numbers() {
   if (settings_.bindings.empty()) return;
@@ -104,13 +109,28 @@ void FixPfv::warn_of_empty_box() const {
     for (int axis = 0; axis < 3; ++axis)
       text << (axis ? ", " : "") << "xyz"[axis] << " from " << from[axis] << " to " << to[axis];
   };
-  text << "Fix pfv (id " << id << "): all " << packing.size() << " grains of the group are outside the "
+  text << "all " << packing.size() << " grains of the group are outside the "
        << "flow box, the fluid acts on none; the box reaches ";
   reach(container_.lower, container_.upper);
   text << " m, the centres of the grains ";
   reach(packing.positions.rowwise().minCoeff(), packing.positions.rowwise().maxCoeff());
   text << " m";
-  error->warning(FLERR, text.str().c_str());
+  warn_of(text.str());
+}
+
+void FixPfv::warn_of(const std::string& problem) const {
+  error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + problem).c_str());
+}
+
+/// What became of each wall: a line for the faces of a container, one for each wall that is none. Rank 0.
+void FixPfv::say_what_holds_the_fluid() {
+  if (!settings_.container) return;
+  const std::string beginning = "Fix pfv (id " + std::string(id) + "): ";
+  std::string text;
+  for (int number = 0; number < container_.face_count(); ++number)
+    text += (number ? ", " : "") + faces_.described(number);
+  print(beginning + "held by " + std::to_string(container_.face_count()) + " walls: " + text + "\n");
+  for (const std::string& reason : left_out_) print(beginning + "left out: " + reason + "\n");
 }
 
 /// A line from which a wrong unit, a box beside the grains or one that is mostly empty is seen. Rank 0.
@@ -130,6 +150,9 @@ void FixPfv::say_what_is_filled() {
                   static_cast<long>(packing.size() - outside), static_cast<long>(outside),
                   2.0 * packing.radii.minCoeff(), 2.0 * packing.radii.maxCoeff(), 100.0 * solid / volume);
   print("Fix pfv (id " + std::string(id) + "): " + text);
+  if (packing.size() > 0 && 2.0 * packing.radii.mean() > largest_usual_grain)
+    warn_of("the mean diameter of the grains is " + std::to_string(2.0 * packing.radii.mean()) +
+            " m; lengths are in m, not mm");
 }
 
 }  // namespace LAMMPS_NS

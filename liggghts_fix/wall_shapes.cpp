@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <sstream>
 
 namespace LAMMPS_NS {
@@ -97,6 +98,25 @@ Vector angular_velocity(const NodeMeans& means) {
   return inertia.ldlt().solve(means.moment);
 }
 
+void set_motion(pfv::ContainerFace& face, const NodeMeans& means) {
+  face.velocity = means.velocity;
+  face.angular_velocity = angular_velocity(means);
+  face.pivot = means.place;
+}
+
+/// What all ranks have, in their order.
+std::vector<double> gathered(const std::vector<double>& own, MPI_Comm world) {
+  int ranks = 1;
+  MPI_Comm_size(world, &ranks);
+  const int count = static_cast<int>(own.size());
+  std::vector<int> counts(ranks), begins(ranks, 0);
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  for (int rank = 1; rank < ranks; ++rank) begins[rank] = begins[rank - 1] + counts[rank - 1];
+  std::vector<double> all(static_cast<std::size_t>(begins.back()) + counts.back());
+  MPI_Allgatherv(own.data(), count, MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE, world);
+  return all;
+}
+
 }  // namespace
 
 pfv::Surface surface_of(FixWallGran* wall, const std::string& what) {
@@ -143,10 +163,33 @@ pfv::ContainerFace plane_of_mesh(FixMeshSurface* fix, MPI_Comm world, const std:
   pfv::ContainerFace face;
   face.surface.normal = normal;
   face.surface.offset = normal.dot(means.place);
-  face.velocity = means.velocity;
-  face.angular_velocity = angular_velocity(means);
-  face.pivot = means.place;
+  set_motion(face, means);
   return face;
+}
+
+std::vector<pfv::Triangle> triangles_of(FixMeshSurface* fix, MPI_Comm world) {
+  TriMesh* mesh = fix->triMesh();
+  constexpr int width = 10;  // number and corners
+  std::vector<double> own;
+  for (int i = 0; i < mesh->sizeLocal(); ++i) {
+    own.push_back(mesh->id(i));
+    for (int j = 0; j < 3; ++j) {
+      double x[3];
+      mesh->node(i, j, x);
+      own.insert(own.end(), x, x + 3);
+    }
+  }
+  const std::vector<double> all = gathered(own, world);
+  std::map<int, pfv::Triangle> by_number;  // before its first run each rank has the whole mesh
+  for (std::size_t i = 0; i + width <= all.size(); i += width)
+    by_number[static_cast<int>(all[i])] = Eigen::Map<const pfv::Triangle>(&all[i + 1]);
+  std::vector<pfv::Triangle> triangles;
+  for (const auto& [number, triangle] : by_number) triangles.push_back(triangle);
+  return triangles;
+}
+
+void set_motion_of_mesh(pfv::ContainerFace& face, FixMeshSurface* mesh, MPI_Comm world) {
+  set_motion(face, means_of(mesh, world));
 }
 
 }  // namespace LAMMPS_NS

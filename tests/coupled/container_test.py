@@ -134,7 +134,7 @@ class Containers(CoupledTest):
         write_plate(self.folder / "bent.stl", [(0, 0, EDGE), (0.1, 0, EDGE + 0.02), (0.1, 0.1, EDGE), (0, 0.1, EDGE)])
         self.refused(pipe + "fix bent all mesh/surface file bent.stl type 1\n"
                      f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom} face top mesh bent\n"
-                     "run 0\n", "bent", "not a plane")
+                     "run 0\n", "top_1", "not square")
 
 
 if __name__ == "__main__":

@@ -185,6 +185,18 @@ TEST(Containers, MovingTiltingAndTurningFacesSweepWhatTheVolumeChangesBy) {
   }
 }
 
+TEST(Containers, TwoFacesOnOnePlaneAreRefused) {
+  pfv::Container cube = turned_cube(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix());
+  cube.faces.push_back(cube.faces[2]);
+  cube.faces.back().name = "again";
+  try {
+    pfv::check(cube);
+    FAIL();
+  } catch (const pfv::InputError& error) {
+    EXPECT_STREQ(error.what(), "container: faces ylo and again are the same plane; leave one of them out");
+  }
+}
+
 TEST(Containers, ANoSlipShellThatTurnsTakesTheGrainsAlong) {
   Random random(7);
   pfv::Container drum = cylinder({0, 1, 0}, {0, 0, 0}, 0.5, 0.8);

@@ -10,6 +10,7 @@
 #include "pfv/flow_model.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/io.hpp"
+#include "pfv/mesh_walls.hpp"
 #include "pfv/names.hpp"
 #include "pfv/network.hpp"
 #include "pfv/options.hpp"

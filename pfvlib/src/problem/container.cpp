@@ -78,6 +78,20 @@ void check_cylinder(const Container& container, int cylinder) {
                      " planes across it; give it one at each end");
 }
 
+/// Two faces on one plane would both count for what one of them bounds.
+void require_different_planes(const Container& container) {
+  for (int f = 0; f < container.face_count(); ++f)
+    for (int other = 0; other < f; ++other) {
+      const Surface &a = container.faces[f].surface, &b = container.faces[other].surface;
+      if (!a.is_plane() || !b.is_plane() || a.normal.dot(b.normal) < 0.0) continue;
+      const double apart = std::abs(a.offset - b.offset);
+      if (a.normal.cross(b.normal).norm() > square || apart > square * (container.upper - container.lower).norm())
+        continue;
+      throw InputError("container: faces " + container.faces[other].name + " and " + container.faces[f].name +
+                       " are the same plane; leave one of them out");
+    }
+}
+
 /// Of all faces together, their motion aside.
 void check_shapes(const Container& container) {
   if (container.face_count() < 3 || container.face_count() > most_faces)
@@ -206,6 +220,7 @@ void check(const Container& container) {
   for (const ContainerFace& face : container.faces) check(face.boundary, "face " + face.name);
   if (container.any_periodic() || !container.pressure_gradient.isZero(0.0))
     throw InputError("container: periodic axes and a pressure gradient need a box");
+  require_different_planes(container);
   check_areas(container);
   check_patches(container);
   check(box_around(container));

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "found_walls.h"
+
+#include "wall_shapes.h"
+
+#include "pfv/container.hpp"
+#include "pfv/error.hpp"
+
+#include "atom.h"
+#include "domain.h"
+#include "fix_mesh_surface.h"
+#include "fix_wall_gran.h"
+#include "modify.h"
+
+#include <mpi.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace LAMMPS_NS {
+
+namespace {
+
+using Source = PfvFaceSource::Kind;
+
+/// With more of the grains than this on its far side a wall stands among them.
+constexpr double among_grains = 0.01;
+/// Directions, places and volumes of walls that differ by less are the same: STL files carry some seven digits.
+constexpr double same = 1e-6;
+
+bool is_source(const PfvSettings& settings, const std::string& id) {
+  return std::any_of(settings.sources.begin(), settings.sources.end(), [&](const PfvFaceSource& source) {
+    return (source.kind == Source::wall || source.kind == Source::mesh) && source.fix_id == id;
+  });
+}
+
+PfvFaceSource source_of(const PfvWall& wall) {
+  PfvFaceSource source;
+  source.kind = wall.mesh ? Source::mesh : Source::wall;
+  source.fix_id = wall.id;
+  return source;
+}
+
+bool same_plane(const pfv::Surface& a, const pfv::Surface& b) {
+  if (!a.is_plane() || !b.is_plane()) return false;
+  const double way = a.normal.dot(b.normal) > 0.0 ? 1.0 : -1.0;
+  return (a.normal - way * b.normal).norm() < same && std::abs(a.offset - way * b.offset) < same * std::abs(a.offset) + 1e-12;
+}
+
+/// A cylinder goes with two planes square to it and nothing else.
+bool cylinders_fit(const std::vector<std::vector<pfv::Surface>>& of_faces) {
+  std::vector<pfv::Surface> surfaces;
+  for (const auto& some : of_faces) surfaces.insert(surfaces.end(), some.begin(), some.end());
+  const auto round = [](const pfv::Surface& surface) { return !surface.is_plane(); };
+  const auto found = std::find_if(surfaces.begin(), surfaces.end(), round);
+  if (found == surfaces.end()) return true;
+  return std::count_if(surfaces.begin(), surfaces.end(), round) == 1 &&
+         std::all_of(surfaces.begin(), surfaces.end(), [&](const pfv::Surface& surface) {
+           return !surface.is_plane() || std::abs(surface.normal.dot(found->axis)) > 1.0 - same;
+         });
+}
+
+/// Of the container with these walls, each with the grains' middle on its inner side; nothing if it is open.
+std::optional<double> volume_within(const std::vector<std::vector<pfv::Surface>>& of_faces, const Eigen::Vector3d& middle) {
+  std::vector<pfv::ContainerFace> faces;
+  for (const auto& surfaces : of_faces)
+    for (pfv::Surface surface : surfaces) {
+      if (surface.is_plane() && surface.distance(middle) < 0.0)
+        surface = pfv::Surface::plane(-surface.normal, surface.offset * surface.normal);
+      faces.emplace_back();
+      faces.back().name = std::to_string(faces.size());
+      faces.back().surface = surface;
+    }
+  try {
+    return pfv::volume_of(pfv::container_of(faces));
+  } catch (const pfv::InputError&) {
+    return {};
+  }
+}
+
+/// The face becomes as many as its mesh has walls; a variable feeds them all.
+void split(PfvSettings& settings, std::size_t number, std::size_t parts) {
+  const pfv::ContainerFace face = settings.faces[number];
+  if (face.boundary.imposes_flux() && parts > 1)
+    throw pfv::InputError("face " + face.name + ": its mesh has " + std::to_string(parts) +
+                          " walls, and a flux goes through one; make that a mesh of its own");
+  const std::vector<PfvBinding> bindings = settings.bindings;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t at = part == 0 ? number : settings.faces.size();
+    if (part > 0) {
+      settings.faces.push_back(face);
+      settings.sources.push_back(settings.sources[number]);
+      for (PfvBinding binding : bindings) {
+        if (binding.of != PfvBinding::Of::face || binding.number != number) continue;
+        binding.number = at;
+        settings.bindings.push_back(binding);
+      }
+    }
+    settings.sources[at].part = static_cast<int>(part);
+    if (parts > 1) settings.faces[at].name = face.name + "_" + std::to_string(part + 1);
+  }
+}
+
+}  // namespace
+
+std::vector<PfvWall> PfvFoundWalls::walls() const {
+  std::vector<PfvWall> walls;
+  for (int i = 0; i < modify->nfix; ++i) {
+    auto* fix = dynamic_cast<FixWallGran*>(modify->fix[i]);
+    if (!fix) continue;
+    if (!fix->is_mesh_wall()) walls.push_back({fix->id, fix, nullptr});
+    for (int m = 0; fix->is_mesh_wall() && m < fix->n_meshes(); ++m) {
+      FixMeshSurface* mesh = fix->mesh_list()[m];
+      walls.push_back({mesh->id, nullptr, mesh});
+    }
+  }
+  return walls;
+}
+
+Fix* PfvFoundWalls::fix_named(const std::string& id) const {
+  const int index = modify->find_fix(id.c_str());
+  return index < 0 ? nullptr : modify->fix[index];
+}
+
+Eigen::Vector3d PfvFoundWalls::middle_of_grains() const {
+  std::array<double, 4> sums{};
+  for (int i = 0; i < atom->nlocal; ++i) {
+    sums[3] += 1.0;
+    for (int k = 0; k < 3; ++k) sums[k] += atom->x[i][k];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 4, MPI_DOUBLE, MPI_SUM, world);
+  if (sums[3] > 0.0) return Eigen::Vector3d(sums[0], sums[1], sums[2]) / sums[3];
+  return 0.5 * (Eigen::Vector3d(domain->boxlo[0], domain->boxlo[1], domain->boxlo[2]) +
+                Eigen::Vector3d(domain->boxhi[0], domain->boxhi[1], domain->boxhi[2]));
+}
+
+/// Grains within all surfaces, and the others.
+std::pair<long, long> PfvFoundWalls::grains_on_both_sides(const std::vector<pfv::Surface>& surfaces) const {
+  std::array<long, 2> counts{};
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const Eigen::Vector3d x(atom->x[i][0], atom->x[i][1], atom->x[i][2]);
+    const bool within = std::all_of(surfaces.begin(), surfaces.end(),
+                                    [&](const pfv::Surface& surface) { return surface.distance(x) > 0.0; });
+    ++counts[within ? 0 : 1];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, counts.data(), 2, MPI_LONG, MPI_SUM, world);
+  return {counts[0], counts[1]};
+}
+
+/// Empty for a wall that holds the fluid.
+std::string PfvFoundWalls::reason_to_leave_out(const PfvWall& wall) const {
+  const std::string what = (wall.mesh ? "mesh '" : "wall '") + wall.id + "' ";
+  Surfaces surfaces;
+  try {
+    surfaces = surfaces_of(source_of(wall), wall.id);
+  } catch (const pfv::InputError& error) {
+    return error.what();
+  }
+  auto [within, beyond] = grains_on_both_sides(surfaces);
+  // a single plane does not say on which side the fluid is
+  if (surfaces.size() == 1 && surfaces[0].is_plane() && beyond > within) std::swap(within, beyond);
+  if (beyond <= among_grains * static_cast<double>(within + beyond)) return {};
+  return what + "has " + std::to_string(beyond) + " of " + std::to_string(within + beyond) + " grains on its other side";
+}
+
+void PfvFoundWalls::add_walls(PfvSettings& settings, std::vector<std::string>& left_out) const {
+  for (const PfvWall& wall : walls()) {
+    if (is_source(settings, wall.id)) continue;
+    const auto named = std::find_if(settings.faces.begin(), settings.faces.end(),
+                                    [&](const pfv::ContainerFace& face) { return face.name == wall.id; });
+    const std::string reason = named == settings.faces.end() ? reason_to_leave_out(wall) : std::string();
+    if (!reason.empty()) {
+      left_out.push_back(reason);
+      continue;
+    }
+    const PfvFaceSource source = source_of(wall);
+    if (named != settings.faces.end()) {
+      settings.sources[static_cast<std::size_t>(named - settings.faces.begin())] = source;
+      continue;
+    }
+    pfv::ContainerFace face;
+    face.name = wall.id;
+    face.wall = *settings.all_walls;
+    settings.faces.push_back(face);
+    settings.sources.push_back(source);
+  }
+  for (std::size_t f = 0; f < settings.faces.size(); ++f)
+    if (settings.sources[f].kind == Source::none)
+      throw pfv::InputError("face " + settings.faces[f].name +
+                            ": there is no fix wall/gran and no mesh of one with this ID; define it before fix pfv, or "
+                            "give the face a source (plane, wall, mesh or extent)");
+}
+
+/// Where the grains end along an axis; without any, the simulation's box.
+double PfvFoundWalls::extreme_of_grains(int axis, bool upper) const {
+  double furthest = -std::numeric_limits<double>::max();
+  for (int i = 0; i < atom->nlocal; ++i)
+    furthest = std::max(furthest, (upper ? atom->x[i][axis] : -atom->x[i][axis]) + atom->radius[i]);
+  MPI_Allreduce(MPI_IN_PLACE, &furthest, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (furthest > -std::numeric_limits<double>::max()) return furthest;
+  return upper ? domain->boxhi[axis] : -domain->boxlo[axis];
+}
+
+/// A face's surfaces, several of a mesh that has them; none where the fix is missing or is no wall, which is said
+/// when the faces are bound.
+std::vector<pfv::Surface> PfvFoundWalls::surfaces_of(const PfvFaceSource& source, const std::string& face) const {
+  std::vector<pfv::Surface> surfaces;
+  const std::string what = "face " + face + ": " + (source.kind == Source::mesh ? "mesh '" : "wall '") + source.fix_id + "' ";
+  if (source.kind == Source::plane) surfaces.push_back(source.surface);
+  if (source.kind == Source::extent) {
+    pfv::Surface plane = source.surface;
+    Eigen::Index axis = 0;
+    plane.normal.cwiseAbs().maxCoeff(&axis);
+    plane.offset = extreme_of_grains(static_cast<int>(axis), plane.normal[axis] > 0.0);
+    surfaces.push_back(plane);
+  }
+  if (source.kind == Source::wall)
+    if (auto* wall = dynamic_cast<FixWallGran*>(fix_named(source.fix_id)); wall && !wall->is_mesh_wall())
+      surfaces.push_back(surface_of(wall, what));
+  if (source.kind == Source::mesh)
+    if (auto* mesh = dynamic_cast<FixMeshSurface*>(fix_named(source.fix_id)))
+      for (const pfv::MeshWall& wall : pfv::walls_of_mesh(triangles_of(mesh, world), source.round, what))
+        surfaces.push_back(wall.surface);
+  return surfaces;
+}
+
+std::vector<PfvFoundWalls::Surfaces> PfvFoundWalls::surfaces_of_faces(PfvSettings& settings, pfv::RoundMeshes round) const {
+  std::vector<Surfaces> surfaces;
+  for (std::size_t f = 0; f < settings.faces.size(); ++f) {
+    settings.sources[f].round = round;
+    surfaces.push_back(surfaces_of(settings.sources[f], settings.faces[f].name));
+  }
+  return surfaces;
+}
+
+/// A floor under a hopper's outlet, a second wall in the same place: those that the words do not name go.
+void PfvFoundWalls::drop_walls_that_bound_nothing(PfvSettings& settings, std::vector<Surfaces>& surfaces,
+                                                  std::size_t named, std::vector<std::string>& left_out) const {
+  const Eigen::Vector3d middle = middle_of_grains();
+  for (std::size_t f = settings.faces.size(); f-- > named;) {
+    std::vector<Surfaces> others = surfaces;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(f));
+    const std::optional<double> with = volume_within(surfaces, middle), without = volume_within(others, middle);
+    const bool doubled = std::any_of(others.begin(), others.end(), [&](const Surfaces& other) {
+      return surfaces[f].size() == 1 && other.size() == 1 && same_plane(surfaces[f][0], other[0]);
+    });
+    if (!doubled && (!with || !without || std::abs(*without - *with) > same * *with)) continue;
+    left_out.push_back("wall '" + settings.faces[f].name + "' bounds nothing, since others keep the fluid from it");
+    settings.faces.erase(settings.faces.begin() + static_cast<std::ptrdiff_t>(f));
+    settings.sources.erase(settings.sources.begin() + static_cast<std::ptrdiff_t>(f));
+    surfaces = std::move(others);
+  }
+}
+
+void PfvFoundWalls::split_meshes(PfvSettings& settings, const std::vector<Surfaces>& surfaces) const {
+  for (std::size_t f = 0; f < surfaces.size(); ++f) {
+    if (settings.sources[f].kind != Source::mesh) continue;
+    const std::size_t parts = surfaces[f].size();
+    if (parts > static_cast<std::size_t>(pfv::most_faces))
+      throw pfv::InputError("face " + settings.faces[f].name + ": mesh '" + settings.sources[f].fix_id + "' has " +
+                            std::to_string(parts) + " planes; a container has at most " +
+                            std::to_string(pfv::most_faces) + " faces: make the wall of fewer flats");
+    if (parts > 1 || (parts == 1 && !surfaces[f][0].is_plane())) split(settings, f, parts);
+  }
+}
+
+std::vector<std::string> PfvFoundWalls::complete(PfvSettings& settings) const {
+  std::vector<std::string> left_out;
+  if (!settings.container) return left_out;
+  const std::size_t named = settings.faces.size();
+  if (settings.all_walls) add_walls(settings, left_out);
+  std::vector<Surfaces> surfaces = surfaces_of_faces(settings, pfv::RoundMeshes::as_cylinders);
+  if (settings.all_walls) drop_walls_that_bound_nothing(settings, surfaces, named, left_out);
+  if (!cylinders_fit(surfaces)) surfaces = surfaces_of_faces(settings, pfv::RoundMeshes::as_flats);
+  split_meshes(settings, surfaces);
+  if (settings.faces.size() >= 3) return left_out;
+  std::string text = "container: it has " + std::to_string(settings.faces.size()) +
+                     " faces; give each wall `face NAME (plane ... | wall FIX_ID | mesh FIX_ID | extent ...)`";
+  for (const std::string& reason : left_out) text += "; left out: " + reason;
+  throw pfv::InputError(text);
+}
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pfv/container.hpp"
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace pfv {
+
+/// A triangle of a mesh: its corners are the columns, m.
+using Triangle = Eigen::Matrix3d;
+
+/// A wall that a mesh is, or one of several.
+struct MeshWall {
+  Surface surface;             ///< of several, with the mesh on its inner side
+  std::vector<int> triangles;  ///< that lie on it, by their numbers
+  double deviation = 0.0;      ///< m; the furthest that they lie from it
+};
+
+/// Whether many flats around an axis are one round wall.
+enum class RoundMeshes { as_cylinders, as_flats };
+
+/// The walls of a mesh that bounds a convex room, open or closed: its planes, in the order of their first
+/// triangles; and where sixteen or more of them go around an axis at one distance, and others of the mesh are
+/// square to it, the cylinder of the same cross-section in their place.
+///
+/// Nodes may stray from their plane by 1e-6 of the mesh's size (STL files carry some seven digits). Throws
+/// InputError, which begins with `what` and names a triangle, for a mesh that is not convex or has no
+/// area. Costs triangles times planes.
+std::vector<MeshWall> walls_of_mesh(const std::vector<Triangle>& triangles, RoundMeshes round,
+                                    const std::string& what);
+
+/// The same wall where its triangles are now, after a motion as a rigid body; `several`: the mesh has others.
+void follow_mesh(MeshWall& wall, const std::vector<Triangle>& triangles, bool several);
+
+}  // namespace pfv

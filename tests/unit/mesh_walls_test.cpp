@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Walls of triangle meshes: planes by coplanar groups, cylinders by flats around an axis.
+#include "pfv/error.hpp"
+#include "pfv/mesh_walls.hpp"
+#include "support/packings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace {
+
+using pfv::MeshWall;
+using pfv::RoundMeshes;
+using pfv::Triangle;
+using support::pi;
+using Vector = Eigen::Vector3d;
+
+/// As an STL file has it: seven digits.
+Vector rounded(const Vector& x) { return x.cast<float>().cast<double>(); }
+
+void add_quad(std::vector<Triangle>& mesh, const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
+  Triangle first, second;
+  first << rounded(a), rounded(b), rounded(c);
+  second << rounded(a), rounded(c), rounded(d);
+  mesh.push_back(first);
+  mesh.push_back(second);
+}
+
+Vector on_circle(double radius, double angle, double z) { return {radius * std::cos(angle), radius * std::sin(angle), z}; }
+
+/// Flats from radius `below` at z = 0 to `above` at `height`, over a part of the way around, turned and moved.
+std::vector<Triangle> funnel(int sides, double below, double above, double height, const Eigen::Isometry3d& place,
+                             double turn = 1.0) {
+  std::vector<Triangle> mesh;
+  for (int i = 0; i < sides; ++i) {
+    const double a = 2.0 * pi * turn * i / sides, b = 2.0 * pi * turn * (i + 1) / sides;
+    add_quad(mesh, place * on_circle(below, a, 0.0), place * on_circle(below, b, 0.0),
+             place * on_circle(above, b, height), place * on_circle(above, a, height));
+  }
+  return mesh;
+}
+
+Eigen::Isometry3d somewhere() {
+  Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+  place.translate(Vector(0.3, -1.2, 2.0)).rotate(Eigen::AngleAxisd(0.7, Vector(1.0, 2.0, 3.0).normalized()));
+  return place;
+}
+
+std::vector<MeshWall> walls_of(const std::vector<Triangle>& mesh, RoundMeshes round = RoundMeshes::as_cylinders) {
+  return pfv::walls_of_mesh(mesh, round, "the mesh ");
+}
+
+TEST(MeshWalls, AnOpenHopperIsItsPlanesWithTheMeshOnTheirInnerSide) {
+  const std::vector<Triangle> mesh = funnel(4, 0.1, 0.5, 0.6, somewhere());
+  const std::vector<MeshWall> walls = walls_of(mesh);
+  ASSERT_EQ(walls.size(), 4u);
+  for (std::size_t w = 0; w < 4; ++w) {
+    EXPECT_EQ(walls[w].triangles, (std::vector<int>{2 * static_cast<int>(w), 2 * static_cast<int>(w) + 1}));
+    EXPECT_LT(walls[w].deviation, 1e-6);
+    // the axis of the funnel, at half its height: (0.1 + 0.5) / 2 cos 45 from the flats but for their slope
+    const double slope = 0.4 * std::sqrt(0.5) / 0.6;
+    EXPECT_NEAR(walls[w].surface.distance(somewhere() * Vector(0.0, 0.0, 0.3)),
+                0.3 * std::sqrt(0.5) / std::hypot(1.0, slope), 1e-6);
+  }
+}
+
+TEST(MeshWalls, FlatsAroundAnAxisAreTheCylinderOfTheirCrossSection) {
+  for (const int sides : {16, 32, 200, 1000}) {
+    const std::vector<Triangle> mesh = funnel(sides, 0.25, 0.25, 1.0, somewhere());
+    const std::vector<MeshWall> walls = walls_of(mesh);
+    ASSERT_EQ(walls.size(), 1u) << sides;
+    const pfv::Surface& shell = walls[0].surface;
+    ASSERT_FALSE(shell.is_plane());
+    const double section = 0.5 * sides * 0.25 * 0.25 * std::sin(2.0 * pi / sides);
+    EXPECT_NEAR(pi * shell.radius * shell.radius, section, 2e-6 * section) << sides;
+    EXPECT_NEAR(std::abs(shell.axis.dot(somewhere().linear().col(2))), 1.0, 1e-10);
+    EXPECT_NEAR(shell.distance(somewhere() * Vector(0.0, 0.0, 0.7)), shell.radius, 1e-6);
+    EXPECT_NEAR(walls[0].deviation, shell.radius - 0.25 * std::cos(pi / sides), 0.25 - shell.radius + 1e-6) << sides;
+    EXPECT_EQ(walls_of(mesh, RoundMeshes::as_flats).size(), static_cast<std::size_t>(sides));
+  }
+}
+
+TEST(MeshWalls, ADrumWithItsEndsIsACylinderAndTwoPlanes) {
+  std::vector<Triangle> mesh = funnel(40, 0.25, 0.25, 1.0, somewhere());
+  for (const double z : {0.0, 1.0})
+    for (int i = 0; i < 40; ++i) {
+      Triangle wedge;
+      wedge << rounded(somewhere() * Vector(0.0, 0.0, z)), rounded(somewhere() * on_circle(0.25, 2.0 * pi * i / 40, z)),
+          rounded(somewhere() * on_circle(0.25, 2.0 * pi * (i + 1) / 40, z));
+      mesh.push_back(wedge);
+    }
+  const std::vector<MeshWall> walls = walls_of(mesh);
+  ASSERT_EQ(walls.size(), 3u);
+  EXPECT_FALSE(walls[0].surface.is_plane());
+  EXPECT_NEAR(walls[1].surface.distance(somewhere() * Vector(0.0, 0.0, 0.4)), 0.4, 1e-6);
+  EXPECT_NEAR(walls[2].surface.distance(somewhere() * Vector(0.0, 0.0, 0.4)), 0.6, 1e-6);
+}
+
+TEST(MeshWalls, WhatIsNotRoundStaysFlat) {
+  EXPECT_EQ(walls_of(funnel(15, 0.25, 0.25, 1.0, somewhere())).size(), 15u);              // few flats
+  EXPECT_EQ(walls_of(funnel(24, 0.25, 0.35, 1.0, somewhere())).size(), 24u);              // a cone
+  EXPECT_EQ(walls_of(funnel(20, 0.25, 0.25, 1.0, somewhere(), 0.5)).size(), 20u);         // half a pipe
+  std::vector<Triangle> oval = funnel(32, 0.25, 0.25, 1.0, Eigen::Isometry3d::Identity());
+  for (Triangle& triangle : oval) triangle.row(0) *= 1.2;
+  EXPECT_EQ(walls_of(oval).size(), 32u);
+}
+
+TEST(MeshWalls, AMeshThatIsNotConvexIsRefusedWithTheTriangle) {
+  std::vector<Triangle> mesh = funnel(4, 0.5, 0.5, 1.0, Eigen::Isometry3d::Identity());
+  add_quad(mesh, {0.1, -0.2, 0.2}, {0.1, 0.2, 0.2}, {0.1, 0.2, 0.8}, {0.1, -0.2, 0.8});  // a baffle
+  try {
+    walls_of(mesh);
+    FAIL();
+  } catch (const pfv::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("the mesh is not convex: its triangle 1 reaches beyond the plane of triangle 9"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_THROW(walls_of({}), pfv::InputError);
+  EXPECT_THROW(walls_of({Triangle::Zero()}), pfv::InputError);
+}
+
+TEST(MeshWalls, FollowAMotion) {
+  const std::vector<Triangle> mesh = funnel(40, 0.25, 0.25, 1.0, Eigen::Isometry3d::Identity());
+  std::vector<Triangle> moved = mesh;
+  for (Triangle& triangle : moved) triangle = somewhere() * triangle;
+  for (const RoundMeshes round : {RoundMeshes::as_cylinders, RoundMeshes::as_flats})
+    for (const MeshWall& wall : walls_of(mesh, round)) {
+      MeshWall now = wall;
+      pfv::follow_mesh(now, moved, round == RoundMeshes::as_flats);
+      const Vector place(0.1, 0.05, 0.3);
+      EXPECT_NEAR(now.surface.distance(somewhere() * place), wall.surface.distance(place), 1e-7);
+    }
+}
+
+}  // namespace
