@@ -103,7 +103,7 @@ TEST_F(InputOutput, CsvRefusalsNameFileLineAndField) {
   expect_refusal("", "", "empty");
   expect_refusal("\n \n", "", "empty");
   expect_refusal(header, "", "no spheres");
-  expect_refusal(good, ":1: ", "column id is missing");
+  expect_refusal(good, ":1: ", "5 numbers where the names of the columns");
   expect_refusal("id,x,y,radius\n", ":1: ", "column z is missing");
   expect_refusal("id,x,y,z,radius,vx,vz\n", ":1: ", "column vy is missing");
   expect_refusal("id,x,y,z,radius,x\n", ":1: ", "column x is named twice");
@@ -119,7 +119,7 @@ TEST_F(InputOutput, CsvRefusalsNameFileLineAndField) {
   expect_refusal(header + "1,1abc,0,0,1\n", ":2: ", "x is '1abc'");
   expect_refusal(header + "1,0,0,0,0\n", ":2: ", "radius is '0'");
   expect_refusal(header + "1,0,0,0,-1\n", ":2: ", "radius is '-1'");
-  expect_refusal(std::string("\x7f" "ELF\0\x01\x02", 7), ":1: ", "'?ELF");
+  expect_refusal(std::string("\x7f" "ELF\0\x01\x02", 7), ":1: ", "is binary");
 }
 
 TEST_F(InputOutput, AMissingPackingOrAFolderIsRefused) {

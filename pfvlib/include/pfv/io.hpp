@@ -12,10 +12,8 @@
 
 namespace pfv {
 
-/// Reads a packing: CSV with header `id,x,y,z,radius[,vx,vy,vz][,omegax,omegay,omegaz]`, or a LIGGGHTS text dump (the last
-/// snapshot, refused where it is cut off; columns id, x, y, z, radius, and vx, vy, vz, omegax, omegay, omegaz if present, in
-/// any order).
-/// Throws InputError naming file, line and field.
+/// The spheres of a file in any format that `read_packing_file` takes; of a dump, the last snapshot. Throws InputError
+/// naming file, line and field.
 PackingArrays read_packing(const std::string& path);
 
 /// Reads a container: JSON {"planes": [{"name", "inward_normal": [x, y, z], "offset"}, ...], "cylinders": [{"name",

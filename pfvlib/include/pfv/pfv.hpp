@@ -15,6 +15,7 @@
 #include "pfv/network.hpp"
 #include "pfv/options.hpp"
 #include "pfv/packing.hpp"
+#include "pfv/packing_file.hpp"
 #include "pfv/report.hpp"
 #include "pfv/settings.hpp"
 #include "pfv/solve_interval.hpp"

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/packing_formats.hpp"
+#include "io/sphere_table.hpp"
+#include "pfv/error.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace pfv::detail {
+namespace {
+
+constexpr std::string_view item = "ITEM:";
+constexpr std::string_view step_item = "ITEM: TIMESTEP";
+constexpr std::string_view time_item = "ITEM: TIME\n";
+
+/// A snapshot in the text of a dump.
+struct Snapshot {
+  std::size_t begin, end;  ///< from its ITEM: TIMESTEP
+  std::optional<std::int64_t> step;
+  std::optional<double> time;
+};
+
+std::string_view line_after(std::string_view text, std::size_t begin) {
+  const std::size_t start = text.find('\n', begin);
+  if (start == std::string_view::npos) return {};
+  return trimmed(text.substr(start + 1, text.find('\n', start + 1) - start - 1));
+}
+
+/// Newer LAMMPS writes the time in an item of its own before that of the step.
+std::size_t begin_of_time_item(std::string_view text, std::size_t step_begin) {
+  const std::size_t window = std::min<std::size_t>(step_begin, 80);
+  const std::size_t found = text.substr(0, step_begin).rfind(time_item);
+  return found != std::string_view::npos && found + window >= step_begin ? found : step_begin;
+}
+
+std::vector<Snapshot> snapshots_of(std::string_view text) {
+  std::vector<Snapshot> snapshots;
+  for (std::size_t begin = text.find(step_item); begin != std::string_view::npos;
+       begin = text.find(step_item, begin + 1)) {
+    Snapshot snapshot{begin, text.size(), integer(line_after(text, begin)), {}};
+    const std::size_t time_begin = begin_of_time_item(text, begin);
+    if (time_begin != begin) snapshot.time = finite_number(line_after(text, time_begin));
+    if (!snapshots.empty()) snapshots.back().end = time_begin;
+    snapshots.push_back(snapshot);
+  }
+  return snapshots;
+}
+
+std::string names_of(const std::vector<Snapshot>& snapshots) {
+  std::string text = std::to_string(snapshots.size()) + " snapshots, of steps";
+  const std::size_t shown = 8;
+  for (std::size_t k = 0; k < snapshots.size(); ++k)
+    if (snapshots[k].step && (k < shown || k + 1 == snapshots.size()))
+      text += (k >= shown ? " ... " : " ") + std::to_string(*snapshots[k].step);
+  return text;
+}
+
+/// Throws InputError where there is none of this name.
+const Snapshot& chosen(const std::string& path, const std::vector<Snapshot>& snapshots, const std::string& name) {
+  if (name == "last") return snapshots.back();
+  const std::string time_word = "time=";
+  const bool by_time = starts_with(name, time_word);
+  const auto time = by_time ? finite_number(name.substr(time_word.size())) : std::nullopt;
+  const auto step = by_time ? std::nullopt : integer(name);
+  for (const Snapshot& snapshot : snapshots) {
+    if (step && snapshot.step == step) return snapshot;
+    if (time && snapshot.time && std::abs(*snapshot.time - *time) <= 1e-9 * std::abs(*time)) return snapshot;
+  }
+  if (step && *step >= 1 && *step <= static_cast<std::int64_t>(snapshots.size()))
+    return snapshots[static_cast<std::size_t>(*step) - 1];
+  throw InputError(path + ": there is no snapshot " + detail::quoted(name) + ": it has " + names_of(snapshots) +
+                   "; give one of these steps, a number counted from 1, time=T where the dump has times, or last");
+}
+
+[[noreturn]] void fail_cut_off(const TextLines& lines, const std::string& what) {
+  lines.fail("the snapshot is cut off " + what + ": remove it, write the dump to its end, or choose another with "
+             "--snapshot");
+}
+
+std::int64_t read_number_of_atoms(TextLines& lines) {
+  if (!lines.next()) fail_cut_off(lines, "before its number of atoms");
+  const auto number = integer(lines.line());
+  if (!number || *number < 0)
+    lines.fail("number of atoms is " + detail::quoted(lines.line()) + ": give a whole number >= 0");
+  return *number;
+}
+
+/// `ITEM: BOX BOUNDS [xy xz yz] pp pp ff` and three lines of lower and upper bounds. A tilted room has none.
+std::optional<PackingBounds> read_bounds(TextLines& lines) {
+  Words words, fields;
+  split_words(lines.line(), words);
+  PackingBounds bounds;
+  if (words.size() >= 6)
+    for (int axis = 0; axis < 3; ++axis) bounds.periodic[axis] = words[words.size() - 3 + axis] == "pp";
+  bool tilted = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!lines.next()) fail_cut_off(lines, "in its bounds");
+    split_words(lines.line(), fields);
+    const auto lower = fields.size() > 1 ? finite_number(fields[0]) : std::nullopt;
+    const auto upper = fields.size() > 1 ? finite_number(fields[1]) : std::nullopt;
+    if (!lower || !upper) lines.fail("bounds are " + detail::quoted(lines.line()) + ": give two numbers");
+    bounds.lower[axis] = *lower;
+    bounds.upper[axis] = *upper;
+    tilted |= fields.size() > 2 && finite_number(fields[2]).value_or(0.0) != 0.0;
+  }
+  if (!tilted) return bounds;
+  if (bounds.any_periodic())
+    lines.fail("the periodic room is tilted, which is not supported: give spheres in a room with right angles");
+  return {};
+}
+
+SphereTable read_atoms(TextLines& lines, const Columns& columns, std::int64_t atoms, std::size_t characters) {
+  SphereTable table(columns);
+  // A garbled number of atoms must not ask for more memory than the file can fill.
+  table.reserve(std::min(static_cast<std::size_t>(atoms), characters / 8));
+  Words fields;
+  for (std::int64_t atom = 0; atom < atoms; ++atom) {
+    if (!lines.next() || lines.line().empty())
+      fail_cut_off(lines, "after " + std::to_string(atom) + " of " + std::to_string(atoms) + " atoms");
+    split_words(lines.line(), fields);
+    table.add(lines, fields);
+  }
+  return table;
+}
+
+/// Multiplies scaled coordinates out and takes unwrapped ones back into a periodic room.
+void make_plain(PackingArrays& packing, Places places, const std::optional<PackingBounds>& bounds,
+                const std::string& path) {
+  if (places == Places::plain) return;
+  const bool scaled = places != Places::unwrapped;
+  if (scaled && !bounds)
+    throw InputError(path + ": its coordinates are scaled and its room is not known or tilted: write x, y, z");
+  for (int axis = 0; bounds && axis < 3; ++axis) {
+    const double lower = bounds->lower[axis], edge = bounds->upper[axis] - lower;
+    auto row = packing.positions.row(axis).array();
+    if (scaled) row = lower + edge * row;
+    if (bounds->periodic[axis] && places != Places::scaled && edge > 0.0)
+      row -= edge * ((row - lower) / edge).floor();
+  }
+}
+
+/// All of a snapshot; `text` ends with it.
+PackingFile read_snapshot(const std::string& path, std::string_view text, const Snapshot& snapshot) {
+  const auto lines_before = static_cast<std::size_t>(
+      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(snapshot.begin), '\n'));
+  const std::string_view own = text.substr(snapshot.begin);
+  TextLines lines(path, own, lines_before);
+  PackingFile file;
+  std::int64_t atoms = -1;
+  while (lines.next()) {
+    if (starts_with(lines.line(), "ITEM: NUMBER OF ATOMS")) atoms = read_number_of_atoms(lines);
+    if (starts_with(lines.line(), "ITEM: BOX BOUNDS")) file.bounds = read_bounds(lines);
+    constexpr std::string_view heading = "ITEM: ATOMS";
+    if (!starts_with(lines.line(), heading)) continue;
+    if (atoms < 0) lines.fail("no ITEM: NUMBER OF ATOMS before this line: write the dump anew");
+    Words names;
+    split_words(lines.line().substr(heading.size()), names);
+    const Columns columns = find_columns(lines, names);
+    const SphereTable table = read_atoms(lines, columns, atoms, own.size());
+    if (lines.next_filled()) {
+      if (starts_with(item, lines.line()) || starts_with(lines.line(), item)) fail_cut_off(lines, "in its first line");
+      lines.fail("more lines than the " + std::to_string(atoms) + " atoms that the snapshot names: write the dump anew");
+    }
+    if (atoms > 0 && own.back() != '\n')
+      lines.fail("the dump ends inside this line: its last number may be cut off; write the dump to its end");
+    file.packing = table.arrays(path);
+    make_plain(file.packing, columns.places, file.bounds, path);
+    if (!table.has_ids()) file.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
+    return file;
+  }
+  fail_cut_off(lines, "before its ITEM: ATOMS");
+}
+
+/// The unit style that a newer LAMMPS writes first.
+void refuse_other_units(const std::string& path, std::string_view text, double length_unit) {
+  constexpr std::string_view heading = "ITEM: UNITS";
+  if (!starts_with(text, heading) || length_unit != 1.0) return;
+  const std::string_view units = line_after(text, 0);
+  if (units != "si")
+    throw InputError(path + ":2: its units are " + detail::quoted(units) + ", not si: give the unit of its lengths in m with "
+                     "--length-unit");
+}
+
+}  // namespace
+
+PackingFile read_dump(const std::string& path, std::string_view text, const PackingChoice& choice) {
+  refuse_other_units(path, text, choice.length_unit);
+  if (choice.snapshot == "last") {  // found without looking at the others
+    const std::size_t begin = text.rfind(step_item);
+    if (begin == std::string_view::npos) throw InputError(path + ": has no ITEM: TIMESTEP: write the dump anew");
+    return read_snapshot(path, text, {begin, text.size(), {}, {}});
+  }
+  const std::vector<Snapshot> snapshots = snapshots_of(text);
+  if (snapshots.empty()) throw InputError(path + ": has no ITEM: TIMESTEP: write the dump anew");
+  const Snapshot& snapshot = chosen(path, snapshots, choice.snapshot);
+  PackingFile file = read_snapshot(path, text.substr(0, snapshot.end), snapshot);
+  file.remarks.push_back("the snapshot is that of step " + std::to_string(snapshot.step.value_or(0)) + ", number " +
+                         std::to_string(&snapshot - snapshots.data() + 1) + " of " + std::to_string(snapshots.size()));
+  return file;
+}
+
+}  // namespace pfv::detail

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pfv/packing_file.hpp"
+
+#include "io/packing_formats.hpp"
+#include "pfv/error.hpp"
+#include "pfv/io.hpp"
+#include "text/number_text.hpp"
+#include "text/text_lines.hpp"
+
+#include <zlib.h>
+
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace pfv {
+namespace detail {
+
+std::string whole_file(const std::string& path) {
+  const auto fail = [&](const std::string& why) {
+    throw InputError("cannot read packing " + detail::quoted(path) + ": " + why + ": give a CSV file or a LIGGGHTS dump");
+  };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!opened) fail(std::strerror(errno));
+  std::fgetc(opened.get());
+  if (std::ferror(opened.get())) fail(std::strerror(errno));  // a folder
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), &gzclose);
+  if (!file) fail(std::strerror(errno));
+  std::string text;
+  std::size_t used = 0;
+  for (int got = 1; got > 0; used += static_cast<std::size_t>(got)) {
+    text.resize(std::max<std::size_t>(2 * used, 1 << 16));
+    const auto room = static_cast<unsigned>(std::min<std::size_t>(text.size() - used, 1u << 30));
+    got = gzread(file.get(), &text[used], room);
+    int problem = Z_OK;
+    const std::string why = gzerror(file.get(), &problem);
+    if (got < 0 || problem == Z_BUF_ERROR)
+      fail(problem == Z_BUF_ERROR ? "the packed file is cut off" : "it cannot be unpacked (" + why + ")");
+  }
+  text.resize(used);
+  return text;
+}
+
+namespace {
+
+/// What a file is that holds no spheres in a form that is read, with what to do; empty: it may be one.
+std::string other_kind(std::string_view text) {
+  struct Kind {
+    std::string_view start;
+    const char* what;
+  };
+  constexpr Kind kinds[]{
+      {"BZh", "is packed with bzip2: unpack it first (bunzip2)"},
+      {"\xFD" "7zXZ", "is packed with xz: unpack it first (unxz)"},
+      {"PK\x03\x04", "is a zip archive or a spreadsheet: unpack it, or save the sheet as CSV"},
+      {"\x28\xB5\x2F\xFD", "is packed with zstd: unpack it first (unzstd)"},
+      {"\xFF\xFE", "is UTF-16 text: save it as UTF-8"},
+      {"\xFE\xFF", "is UTF-16 text: save it as UTF-8"},
+      {"\x93NUMPY", "is a NumPy array: write it with numpy.savetxt, or use the Python module"},
+      {"\x89HDF", "is an HDF5 file: write its spheres as CSV"},
+      {"LIGGGHTS (", "is a log of LIGGGHTS: give a dump"},
+      {"LAMMPS (", "is a log of LAMMPS: give a dump"},
+      {"{", "is JSON: give a table with columns id, x, y, z, radius"},
+      {"[", "is JSON: give a table with columns id, x, y, z, radius"},
+      {"<html", "is a web page"},
+      {"<!DOCTYPE", "is a web page"}};
+  if (starts_with(text, "solid") && text.substr(0, 4096).find("facet") != std::string_view::npos)
+    return "is an STL mesh, which holds no spheres: give the grains' file";
+  for (const Kind& kind : kinds)
+    if (starts_with(text, kind.start)) return kind.what;
+  if (text.substr(0, 4096).find('\0') != std::string_view::npos)
+    return "is binary: give text (a dump written with dump_modify binary no, or a table)";
+  return {};
+}
+
+bool is_xml_vtk(std::string_view text) { return text.substr(0, 2048).find("<VTKFile") != std::string_view::npos; }
+
+/// `N atoms` within the first lines, after one that may say anything.
+bool is_data_file(std::string_view text) {
+  TextLines lines("", text.substr(0, 4096));
+  std::vector<std::string_view> words;
+  for (int k = 0; k < 12 && lines.next(); ++k) {
+    split_words(lines.line(), words);
+    if (k > 0 && words.size() >= 2 && words[1] == "atoms" && integer(words[0])) return true;
+  }
+  return false;
+}
+
+PackingFile read_any(const std::string& path, std::string_view text, const PackingChoice& choice) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (starts_with(text, byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  const std::string_view begin = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  if (starts_with(begin, "ITEM:")) return read_dump(path, text, choice);
+  if (choice.snapshot != "last")
+    throw InputError(path + ": is no dump, so it has no snapshot " + detail::quoted(choice.snapshot) + ": leave --snapshot away");
+  if (is_xml_vtk(begin)) return read_xml_vtk(path, text);
+  if (starts_with(begin, "# vtk DataFile")) return read_legacy_vtk(path, text);
+  if (const std::string kind = other_kind(begin); !kind.empty()) throw InputError(path + ":1: " + kind);
+  if (is_data_file(text)) return read_data_file(path, text);
+  return read_table(path, text, choice.length_unit != 1.0);
+}
+
+void apply_unit(PackingFile& file, double unit) {
+  if (unit == 1.0) return;
+  file.packing.positions *= unit;
+  file.packing.radii *= unit;
+  file.packing.velocities *= unit;
+  if (!file.bounds) return;
+  file.bounds->lower *= unit;
+  file.bounds->upper *= unit;
+}
+
+}  // namespace
+}  // namespace detail
+
+PackingFile read_packing_file(const std::string& path, const PackingChoice& choice) {
+  const std::string content = detail::whole_file(path);
+  PackingFile file = detail::read_any(path, content, choice);
+  detail::apply_unit(file, choice.length_unit);
+  return file;
+}
+
+PackingArrays read_packing(const std::string& path) { return read_packing_file(path).packing; }
+
+}  // namespace pfv

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/sphere_table.hpp"
+
+#include "pfv/error.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <initializer_list>
+#include <utility>
+
+namespace pfv::detail {
+namespace {
+
+constexpr std::array<const char*, column_count> column_names{
+    "id", "x", "y", "z", "radius", "vx", "vy", "vz", "omegax", "omegay", "omegaz"};
+
+/// Other names of a column, from the most to the least usual: of LIGGGHTS, YADE, ParaView's tables, notebooks.
+std::vector<std::string> other_names(int column) {
+  const auto of_vector = [&](std::initializer_list<const char*> stems) {
+    std::vector<std::string> names;
+    const int axis = column < vx ? column - x : (column - vx) % 3;
+    for (const std::string stem : stems)
+      for (const char* link : {"", "_", ":"})
+        for (const std::string& component : {std::string(1, "xyz"[axis]), std::to_string(axis)})
+          if (*link || component[0] > '9') names.push_back(stem + link + component);
+    return names;
+  };
+  if (column == id) return {"tag", "particle_id", "particleid", "particle id", "atom_id"};
+  if (column == radius) return {"r", "rad", "radii"};
+  if (column < radius) return of_vector({"pos", "position", "points", "center", "centre", "p"});
+  if (column < omegax) return of_vector({"v", "vel", "velocity", "linvel"});
+  return of_vector({"omega", "w", "angvel", "angular_velocity"});
+}
+
+int place_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+/// Places under the names of a dump's other kinds of coordinates.
+void find_other_places(Columns& columns, const std::vector<std::string>& names) {
+  struct Kind {
+    const char* ending;
+    Places places;
+  };
+  for (const Kind kind : {Kind{"s", Places::scaled}, {"u", Places::unwrapped}, {"su", Places::scaled_unwrapped}}) {
+    std::array<int, 3> found{};
+    for (int axis = 0; axis < 3; ++axis) found[axis] = place_of(names, std::string(1, "xyz"[axis]) + kind.ending);
+    if (found[0] < 0 || found[1] < 0 || found[2] < 0) continue;
+    std::copy(found.begin(), found.end(), columns.place.begin() + x);
+    columns.places = kind.places;
+    return;
+  }
+}
+
+void find_radius(Columns& columns, const std::vector<std::string>& names) {
+  if (columns.place[radius] >= 0) return;
+  for (const char* name : {"diameter", "d", "diam"})
+    if (const int place = place_of(names, name); place >= 0) {
+      columns.place[radius] = place;
+      columns.diameters = true;
+      return;
+    }
+}
+
+void require_all(const TextLines& lines, const Columns& columns) {
+  // velocities and spins come all three or not at all
+  const auto any_of = [&](int first) {
+    return std::any_of(columns.place.begin() + first, columns.place.begin() + first + 3,
+                       [](int place) { return place >= 0; });
+  };
+  const bool moving = any_of(vx), spinning = any_of(omegax);
+  for (int column = x; column < column_count; ++column)
+    if (columns.place[column] < 0 && (column < vx || (column < omegax ? moving : spinning)))
+      lines.fail(std::string("column ") + column_names[column] +
+                 " is missing: the columns id, x, y, z, radius (and vx, vy, vz together, or "
+                 "omegax, omegay, omegaz) must be named here, not " + detail::quoted(lines.line()));
+}
+
+}  // namespace
+
+std::string_view unit_in(std::string_view name) {
+  while (!name.empty() && (name.back() == '"' || name.back() == '\'')) name.remove_suffix(1);
+  if (name.empty() || (name.back() != ']' && name.back() != ')')) return {};
+  const std::size_t begin = name.find_last_of(name.back() == ']' ? '[' : '(');
+  if (begin == std::string_view::npos || begin == 0) return {};
+  return trimmed(name.substr(begin + 1, name.size() - begin - 2));
+}
+
+std::string plain_name(std::string_view name) {
+  name = trimmed(name);
+  if (name.size() > 1 && (name.front() == '"' || name.front() == '\'') && name.back() == name.front())
+    name = trimmed(name.substr(1, name.size() - 2));
+  if (!unit_in(name).empty()) name = trimmed(name.substr(0, name.find_last_of("[(")));
+  std::string plain(name);
+  for (char& c : plain) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return plain;
+}
+
+Columns find_columns(const TextLines& lines, const Words& names) {
+  Columns columns;
+  columns.place.fill(-1);
+  columns.fields = names.size();
+  std::vector<std::string> plain;
+  for (const std::string_view name : names) plain.push_back(plain_name(name));
+  for (int column = 0; column < column_count; ++column) {
+    columns.place[column] = place_of(plain, column_names[column]);
+    if (std::count(plain.begin(), plain.end(), column_names[column]) > 1)
+      lines.fail(std::string("column ") + column_names[column] + " is named twice: keep one of them");
+  }
+  if (columns.place[x] < 0 && columns.place[y] < 0 && columns.place[z] < 0) find_other_places(columns, plain);
+  for (int column = 0; column < column_count; ++column) {
+    if (column == radius) find_radius(columns, plain);
+    if (columns.place[column] >= 0) continue;
+    for (const std::string& name : other_names(column))
+      if (columns.place[column] < 0) columns.place[column] = place_of(plain, name);
+  }
+  require_all(lines, columns);
+  return columns;
+}
+
+void SphereTable::reserve(std::size_t spheres) {
+  ids_.reserve(spheres);
+  line_numbers_.reserve(spheres);
+  values_.reserve(spheres * values_a_sphere());
+}
+
+void SphereTable::add(const TextLines& lines, const Words& fields) {
+  if (fields.size() != columns_.fields)
+    lines.fail("has " + std::to_string(fields.size()) + " fields instead of " +
+               std::to_string(columns_.fields) + ": give one for each column");
+  std::int64_t number = static_cast<std::int64_t>(ids_.size()) + 1;
+  if (columns_.ids()) {
+    const std::string_view text = fields[columns_.place[id]];
+    const auto given = integer(text);
+    if (!given) lines.fail("id is " + detail::quoted(text) + ": give a whole number");
+    number = *given;
+  }
+  ids_.push_back(number);
+  line_numbers_.push_back(lines.number());
+  for (int column = x; column < column_count; ++column)
+    if (columns_.read(column)) values_.push_back(value(lines, fields, column));
+}
+
+PackingArrays SphereTable::arrays(const std::string& path) const {
+  if (ids_.empty()) throw InputError(path + ": holds no spheres: give at least one line below the header");
+  refuse_equal_ids(path, ids_, line_numbers_);
+  const auto n = static_cast<Eigen::Index>(ids_.size());
+  const auto rows = static_cast<Eigen::Index>(values_a_sphere());
+  const Eigen::Map<const Eigen::MatrixXd> values(values_.data(), rows, n);
+  PackingArrays packing;
+  packing.ids = Eigen::Map<const Packing::Ids>(ids_.data(), n);
+  packing.positions = values.topRows<3>();
+  packing.radii = values.row(3).transpose();
+  if (columns_.velocities()) packing.velocities = values.middleRows<3>(4);
+  if (columns_.spins()) packing.angular_velocities = values.bottomRows<3>();
+  return packing;
+}
+
+double SphereTable::value(const TextLines& lines, const Words& fields, int column) const {
+  const std::string_view text = fields[columns_.place[column]];
+  const std::string name = column == radius && columns_.diameters ? "diameter" : column_names[column];
+  const auto number = finite_number(text);
+  if (!number && text.find(',') != std::string_view::npos)
+    lines.fail(name + " is " + detail::quoted(text) + ": a number with a comma; write a decimal point");
+  if (!number) lines.fail(name + " is " + detail::quoted(text) + ": give a finite number");
+  if (column == radius && *number <= 0) lines.fail(name + " is " + detail::quoted(text) + ": give a number > 0");
+  return column == radius && columns_.diameters ? 0.5 * *number : *number;
+}
+
+void refuse_equal_ids(const std::string& path, const std::vector<std::int64_t>& ids,
+                      const std::vector<std::size_t>& lines) {
+  std::vector<std::pair<std::int64_t, std::size_t>> order(ids.size());
+  for (std::size_t k = 0; k < ids.size(); ++k) order[k] = {ids[k], lines.empty() ? k : lines[k]};
+  std::sort(order.begin(), order.end());
+  const auto twin = std::adjacent_find(order.begin(), order.end(),
+                                       [](auto& a, auto& b) { return a.first == b.first; });
+  if (twin == order.end()) return;
+  const std::string number = std::to_string(twin->first);
+  if (lines.empty()) throw InputError(path + ": id " + number + " comes twice: give each sphere its own");
+  throw InputError(path + ":" + std::to_string((twin + 1)->second) + ": id " + number + " stands in line " +
+                   std::to_string(twin->second) + " too: give each sphere its own");
+}
+
+}  // namespace pfv::detail
