@@ -82,7 +82,7 @@ int carry_out(const Commands& commands) {
   if (commands.bench->parsed())
     bench(commands.bench_arguments, std::cout);
   else if (commands.time_step->parsed())
-    time_step(commands.time_step_arguments, std::cout);
+    time_step(commands.time_step_arguments, std::cout, std::cerr);
   else if (commands.settings->parsed())
     commands.of_fix ? write_fix_syntax(std::cout) : write_settings(std::cout);
   else

@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <ostream>
 #include <sstream>
+#include <utility>
 
 namespace pfv::app {
 namespace {
@@ -46,9 +48,19 @@ int whole_number(const std::string& option, const std::string& text) {
 void add_flow_options(CLI::App& command, SolveArguments& arguments) {
   const std::string group = "Flow problem (SI units; a face not named is sealed)";
   command.add_option("--packing", arguments.packing,
-                     "spheres (m, m/s): CSV with header id,x,y,z,radius[,vx,vy,vz],\n"
-                     "or a LIGGGHTS dump, of which the last snapshot is taken")
+                     "spheres (m, m/s): a table with header id,x,y,z,radius[,vx,vy,vz],\n"
+                     "a LIGGGHTS dump or data file, points of a .vtk, .vtu or .vtp file;\n"
+                     "also packed with gzip")
       ->required()->option_text("FILE (required)")->group(group);
+  command.add_option("--snapshot", arguments.snapshot,
+                     "of a dump: its time step, time=T where it has times, or where there\n"
+                     "is no such step its number, from 1 (default last)")
+      ->option_text("N|time=T|last")->group(group);
+  command.add_option("--length-unit", arguments.length_unit,
+                     "unit of the packing file's lengths, its velocities a second: a name\n"
+                     "or a number of metres (default m)")
+      ->option_text("m|cm|mm|um|METRES")->group(group);
+  command.add_flag("--at-rest", arguments.at_rest, "leave the velocities of the file out (default: taken)")->group(group);
   command.add_option("--box", arguments.box, "flow box, m (required, or --container)")
       ->type_size(6)->expected(1)->option_text("XLO XHI YLO YHI ZLO ZHI")->group(group);
   command.add_option("--container", arguments.container,
@@ -91,6 +103,16 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
 }
 
 namespace {
+
+double length_unit_of(const std::string& text) {
+  struct Unit {
+    const char* name;
+    double metres;
+  };
+  for (const Unit unit : {Unit{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}})
+    if (text == unit.name) return unit.metres;
+  return positive("--length-unit", text);
+}
 
 /// "x", "x,y", "z,x,y": the axes along which the packing repeats.
 void apply_periodic(const SolveArguments& arguments, Box& box) {
@@ -259,6 +281,8 @@ void add_solve_options(CLI::App& command, SolveArguments& arguments) {
 SolveRequest request_of(const SolveArguments& arguments) {
   SolveRequest request;
   request.packing = arguments.packing;
+  request.choice = {arguments.snapshot, length_unit_of(arguments.length_unit)};
+  request.at_rest = arguments.at_rest;
   request.container = container_of(arguments);
   request.settings = settings_of(arguments);
   if (arguments.time_step) request.time_step = positive("--time-step", *arguments.time_step);
@@ -269,6 +293,14 @@ SolveRequest request_of(const SolveArguments& arguments) {
   request.culprits = arguments.culprits;
   check_outputs(request);
   return request;
+}
+
+PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks) {
+  PackingFile file = read_packing_file(request.packing, request.choice);
+  for (const std::string& remark : file.remarks) remarks << "pfv: " << request.packing << ": " << remark << '\n';
+  if (request.at_rest) file.packing.velocities.resize(3, 0);
+  if (request.at_rest) file.packing.angular_velocities.resize(3, 0);
+  return std::move(file.packing);
 }
 
 }  // namespace pfv::app

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "pfv/container.hpp"
+#include "pfv/packing_file.hpp"
 #include "pfv/settings.hpp"
 
 #include <CLI/CLI.hpp>
+#include <iosfwd>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,7 +17,8 @@ namespace pfv::app {
 /// The command line of `pfv solve` as text. Numbers are read by us and not by the parser, which
 /// would take "1abc" and "nan".
 struct SolveArguments {
-  std::string packing;
+  std::string packing, snapshot = "last", length_unit = "m";
+  bool at_rest = false;
   std::optional<std::string> container;
   std::vector<std::string> box, faces, patches, regions, points, periodic, gradient;
   std::string wall = name_of(Wall::no_slip);
@@ -27,6 +30,8 @@ struct SolveArguments {
 /// What `pfv solve` is to do.
 struct SolveRequest {
   std::string packing;
+  PackingChoice choice;  ///< of the packing file
+  bool at_rest = false;  ///< its velocities are left out
   Container container;
   Settings settings;
   double time_step = 0.0;  ///< s; 0: none
@@ -38,6 +43,9 @@ struct SolveRequest {
 std::string option_of(const Setting& setting);  ///< "--volume-rates"
 double positive(const std::string& option, const std::string& text);
 int whole_number(const std::string& option, const std::string& text);
+
+/// The spheres of the packing file; remarks on how it was read go to `remarks`.
+PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks);
 
 /// Packing, box and what lies around: for every command that solves a flow.
 void add_flow_options(CLI::App& command, SolveArguments& arguments);

@@ -64,10 +64,34 @@ void warn_of_hidden(const FlowModel& flow, const Packing& packing, std::ostream&
   warnings << (hidden.size() > shown ? " ...\n" : "\n");
 }
 
+/// A flow between pressures through grains that are not quite at rest.
+void warn_of_motion(const SolveRequest& request, const Packing& packing, const Report& report, std::ostream& warnings) {
+  if (report.permeability || packing.velocities.cols() == 0 || packing.velocities.isZero(0.0)) return;
+  const auto& faces = request.container.faces;
+  const auto pressures = std::count_if(faces.begin(), faces.end(), [](const ContainerFace& face) {
+    return face.boundary.imposes_pressure();
+  });
+  if (pressures != 2 || at_rest(packing, request.container)) return;
+  warnings << "pfv: warning: the grains move, up to " << packing.velocities.colwise().norm().maxCoeff()
+           << " m/s: no permeability is given; --at-rest leaves their velocities out\n";
+}
+
+/// Grains in water that are larger than this are most likely millimetres.
+constexpr double largest_usual_diameter = 0.3;  // m
+
+void warn_of_size(const Packing& packing, std::ostream& warnings) {
+  const double diameter = 2.0 * packing.radii.mean();
+  if (diameter > largest_usual_diameter)
+    warnings << "pfv: warning: the mean diameter is " << diameter
+             << " m; lengths are in m: is --length-unit mm missing?\n";
+}
+
 void warn(const SolveRequest& request, const FlowModel& flow, const Packing& packing,
           const Report& report, std::ostream& warnings) {
   const Counts& counts = report.counts;
   warn_of_hidden(flow, packing, warnings);
+  warn_of_motion(request, packing, report, warnings);
+  warn_of_size(packing, warnings);
   if (is_unloaded(request, packing))
     warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
   else if (counts.pinned_pores > 0)
@@ -114,7 +138,7 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
 
 void solve(const SolveRequest& request, std::ostream& out, std::ostream& warnings) {
   const double start = cpu_seconds();
-  const PackingArrays arrays = read_packing(request.packing);
+  const PackingArrays arrays = packing_of(request, warnings);
   const double read_seconds = cpu_seconds() - start;
 
   const Packing packing = arrays.view();

@@ -204,10 +204,10 @@ void add_time_step_options(CLI::App& command, TimeStepArguments& arguments) {
     if (!option->get_option_text().empty()) option->type_name("VALUE");  // in parser's messages
 }
 
-void time_step(const TimeStepArguments& arguments, std::ostream& out) {
+void time_step(const TimeStepArguments& arguments, std::ostream& out, std::ostream& warnings) {
   const SolveRequest request = problem_of(arguments);
   const std::vector<Piston> pistons = pistons_of(arguments.pistons, request.container);
-  const PackingArrays arrays = read_packing(request.packing);
+  const PackingArrays arrays = packing_of(request, warnings);
   Packing packing = arrays.view();
   new (&packing.velocities) Eigen::Map<const Eigen::Matrix3Xd>(nullptr, 3, 0);
   const Eigen::VectorXd masses = masses_of(packing, arguments.grain_density);

@@ -24,6 +24,6 @@ void add_time_step_options(CLI::App& command, TimeStepArguments& arguments);
 /// The time steps that an explicit coupling bears in one packing, the true limit and the papers'
 /// estimates: a table goes to `out`, all of it into the JSON file, the 3x3 matrices into the CSV file.
 /// Throws InputError, FileError, SolverError.
-void time_step(const TimeStepArguments& arguments, std::ostream& out);
+void time_step(const TimeStepArguments& arguments, std::ostream& out, std::ostream& warnings);
 
 }  // namespace pfv::app
