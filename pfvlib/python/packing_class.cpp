@@ -4,7 +4,7 @@
 #include "classes.hpp"
 
 #include "pfv/dense_packing.hpp"
-#include "pfv/io.hpp"
+#include "pfv/packing_file.hpp"
 
 namespace pfv::python {
 namespace {
@@ -33,12 +33,16 @@ void add_packing_class(py::module_& module) {
                                 [](py::object self) { return rows_or_none(arrays_of(self).angular_velocities, self); },
                                 "N x 3, rad/s, or None");
   packing.def("__len__", [](const PackingArrays& self) { return self.ids.size(); });
-  module.def("read_packing", [](py::object given) {
+  module.def("read_packing", [](py::object given, py::object snapshot, double length_unit) {
                const std::string path = path_of(given);
+               const PackingChoice choice{py::str(snapshot), length_unit};
                const py::gil_scoped_release released;
-               return read_packing(path);
-             }, "path"_a,
-             R"(The spheres of a CSV file or a LIGGGHTS dump, as `pfv solve` reads them.
+               return read_packing_file(path, choice).packing;
+             }, "path"_a, py::kw_only(), "snapshot"_a = "last", "length_unit"_a = 1.0,
+             R"(The spheres of a file in any format that `pfv solve` reads (doc/user_guide.md).
+
+snapshot: of a dump: "last", a time step, "time=T", or where there is no such step a number from 1
+length_unit: of the file, m
 
 Raises InputError that names file, line and field.)");
   module.def("dense_packing", &dense_packing, "spheres"_a, "solid_fraction"_a = 0.6, "spread"_a = 0.2, "seed"_a = 1,

@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 import pfv
-from case import UNIT, grains, through_flow
+from case import DATA, UNIT, grains, through_flow
 
 
 class Errors(unittest.TestCase):
@@ -93,6 +93,12 @@ class Errors(unittest.TestCase):
             self.flow.write_fields("/there/is/none.vtu")
         with self.assertRaises(pfv.InputError):
             pfv.read_packing("/there/is/none.csv")
+
+    def test_a_snapshot_of_a_table_and_a_unit(self):
+        with self.assertRaisesRegex(pfv.InputError, "is no dump"):
+            pfv.read_packing(DATA / "packing_100.csv", snapshot=3)
+        small = pfv.read_packing(DATA / "packing_100.csv", length_unit=1e-3)
+        np.testing.assert_array_equal(small.radii, 1e-3 * pfv.read_packing(DATA / "packing_100.csv").radii)
 
     def test_queries_refuse_bad_places_and_axes(self):
         self.flow.evaluate(self.positions, self.radii)
