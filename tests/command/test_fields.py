@@ -92,15 +92,35 @@ class Network(CommandTest):
                                delta=1e-9)
 
 
+OVERLAPPING = """id,x,y,z,radius
+1,0.358579,0.358579,0.358579,0.232
+2,0.641421,0.641421,0.358579,0.232
+3,0.641421,0.358579,0.641421,0.232
+4,0.358579,0.641421,0.641421,0.232
+5,0.5,0.5,0.1,0.15
+"""
+
+
 class FluidVolume(CommandTest):
-    # Where spheres neither overlap nor cross a face the signed sum of the pores is exact.
-    def test_pore_volumes_add_up_to_that_of_the_report(self):
-        header, rows = dense_rows()
-        lines = [",".join([*row[:4], repr(0.7 * float(row[4]))]) for row in rows]
-        packing = self.write("apart.csv", "\n".join([",".join(header), *lines]))
-        summary = self.report("--vtk", "apart.vtu", *THROUGH_FLOW, packing=packing)
-        volume = arrays_of(grid_of(self.folder / "apart.vtu").GetPointData())["volume"]
+    """The volumes of the pores add up to that of the report, where spheres overlap each other and walls, too."""
+
+    def volumes(self, packing, *options):
+        summary = self.report("--vtk", "pores.vtu", *THROUGH_FLOW, *options, packing=packing)
+        volume = arrays_of(grid_of(self.folder / "pores.vtu").GetPointData())["volume"]
         self.assertAlmostEqual(volume.sum() / summary["pore_volume"], 1, delta=1e-12)
+        return volume
+
+    def scaled(self, factor):
+        header, rows = dense_rows()
+        lines = [",".join([*row[:4], repr(factor * float(row[4]))]) for row in rows]
+        return self.write("scaled.csv", "\n".join([",".join(header), *lines]))
+
+    def test_of_a_dense_packing(self):
+        for factor in (0.7, 1.0, 1.3):
+            self.volumes(self.scaled(factor))
+
+    def test_of_four_spheres_around_a_pore_and_one_through_a_wall(self):
+        self.assertGreaterEqual(self.volumes(self.write("overlap.csv", OVERLAPPING)).min(), 0.0)
 
 
 class Grains(CommandTest):

@@ -122,6 +122,9 @@ TEST(NoPressureAnywhere, IsRefusedWithMovingGrainsFacesOrAFlux) {
   box[pfv::Face::zhi].velocity = 0.0;
   box[pfv::Face::zlo].boundary = pfv::Boundary::flux(1.0);
   expect_line(refused(box), "the fluid cannot leave");
+  box[pfv::Face::zhi].boundary = pfv::Boundary::flux(-1.0);
+  expect_line(refused(box), "its level is not determined");
+  box[pfv::Face::zhi].boundary = {};
   packing.velocities = Eigen::Matrix3Xd::Constant(3, 20, 0.1);
   expect_line(refused(pfv::Box{}), "nothing determines the pressure");
 }

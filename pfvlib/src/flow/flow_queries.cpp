@@ -113,11 +113,7 @@ const std::vector<double>& Flow::throat_conductances() const {
 
 std::vector<double> Flow::throat_fluxes() const { return parts_->balance().throat_fluxes; }
 
-Eigen::VectorXd Flow::pore_volumes() const {
-  const std::vector<double>& volumes = parts_->network().throats.pore_fluid_volume;
-  return Eigen::Map<const Eigen::VectorXd>(volumes.data(),
-                                           static_cast<Eigen::Index>(volumes.size()));
-}
+Eigen::VectorXd Flow::pore_volumes() const { return pfv::pore_volumes(parts_->network()); }
 
 Report Flow::report() const {
   BuiltNetwork& built = parts_->network();

@@ -3,6 +3,7 @@
 
 #include "geometry/ball_sections.hpp"
 #include "geometry/pi.hpp"
+#include "geometry/solid_angle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,12 +60,23 @@ BallSection cut_within_cell(const PoreNetwork& network, const Spheres& spheres, 
   return sum;
 }
 
+/// Spheres whose centre is outside their own power cell.
+std::vector<char> centres_outside(const PoreNetwork& network, const Spheres& vertices, int spheres) {
+  std::vector<char> outside(spheres, 0);
+  for (const auto& cell : network.cell_vertices)
+    for (int i = 0; i < 4 && !is_wall(cell[i]); ++i)
+      for (int j = 0; j < 4; ++j)
+        if (i != j && plane_distance(vertices, cell[i], cell[j]) < 0.0) outside[network.vertex_sphere[cell[i]]] = 1;
+  for (const int k : network.hidden) outside[k] = 1;
+  return outside;
+}
+
 }  // namespace
 
 std::vector<SolidUnion> solid_parts(const PoreNetwork& network, const Spheres& vertices,
                                     const Spheres& spheres) {
   std::vector<BallSection> cut(spheres.size());
-  std::vector<char> centre_outside(spheres.size(), 0);  // of its own power cell
+  const std::vector<char> centre_outside = centres_outside(network, vertices, spheres.size());
   for (int c = 0; c < network.cells(); ++c) {
     const auto& cell = network.cell_vertices[c];
     for (int i = 0; i < 4 && !is_wall(cell[i]); ++i)
@@ -74,10 +86,8 @@ std::vector<SolidUnion> solid_parts(const PoreNetwork& network, const Spheres& v
         const BallSection section = cut_within_cell(network, vertices, c, i, j);
         cut[k].volume += section.volume;
         cut[k].area += section.area;
-        if (plane_distance(vertices, cell[i], cell[j]) < 0.0) centre_outside[k] = 1;
       }
   }
-  for (const int k : network.hidden) centre_outside[k] = 1;
   std::vector<SolidUnion> parts(spheres.size());
   for (int k = 0; k < spheres.size(); ++k) {
     const double r = spheres.radii[k];
@@ -97,6 +107,24 @@ SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
     solid.area += part.area;
   }
   return solid;
+}
+
+std::vector<double> doubled_volumes(const PoreNetwork& network, const Spheres& vertices,
+                                    const Spheres& spheres) {
+  const std::vector<char> outside = centres_outside(network, vertices, spheres.size());
+  std::vector<double> volumes(network.pores(), 0.0);
+  for (int c = 0; c < network.cells(); ++c) {
+    const auto& cell = network.cell_vertices[c];
+    for (int i = 0; i < 4 && !is_wall(cell[i]); ++i) {
+      double& volume = volumes[network.cell_pore[c]];
+      for (int j = 0; j < 4; ++j)
+        if (i != j) volume += cut_within_cell(network, vertices, c, i, j).volume;
+      if (!outside[network.vertex_sphere[cell[i]]]) continue;
+      const auto towards = [&](int other) { return vertices.towards(cell[i], cell[(i + other) % 4]); };
+      volume += std::abs(solid_angle(towards(1), towards(2), towards(3))) * std::pow(vertices.radii[cell[i]], 3) / 3.0;
+    }
+  }
+  return volumes;
 }
 
 }  // namespace pfv

@@ -24,4 +24,9 @@ SolidUnion solid_union(const PoreNetwork& network, const Spheres& vertices,
 std::vector<SolidUnion> solid_parts(const PoreNetwork& network, const Spheres& vertices,
                                     const Spheres& spheres);
 
+/// What the spheres' wedges in each pore hold beyond the union, m³: where spheres overlap each other or a wall, wedges
+/// count twice or stick out.
+std::vector<double> doubled_volumes(const PoreNetwork& network, const Spheres& vertices,
+                                    const Spheres& spheres);
+
 }  // namespace pfv

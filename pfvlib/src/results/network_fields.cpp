@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/network_fields.hpp"
 
+#include "physics/solid_union.hpp"
 #include "results/averages.hpp"
 
 namespace pfv {
@@ -22,6 +23,11 @@ Field on_cells(const char* name, const Eigen::RowVectorXd& of_pores,
 
 }  // namespace
 
+Eigen::VectorXd pore_volumes(const BuiltNetwork& built) {
+  const std::vector<double> doubled = doubled_volumes(built.network, built.vertices, built.grains.spheres);
+  return (row(built.throats.pore_fluid_volume) + row(doubled)).transpose();
+}
+
 FieldGrid network_fields(const BuiltNetwork& built, const Solution& solution,
                          const Balance& balance) {
   const PoreNetwork& network = built.network;
@@ -35,7 +41,7 @@ FieldGrid network_fields(const BuiltNetwork& built, const Solution& solution,
     across[t] = 0.5 * (solution.pressures[i] + solution.pressures[j]);
   }
   const Eigen::RowVectorXd pressures = solution.pressures.transpose();
-  const Eigen::RowVectorXd volumes = row(built.throats.pore_fluid_volume);
+  const Eigen::RowVectorXd volumes = pore_volumes(built).transpose();
   const Eigen::RowVectorXd no_pore = Eigen::RowVectorXd::Zero(network.pores());
   const Eigen::RowVectorXd no_throat = Eigen::RowVectorXd::Zero(network.throats());
   grid.of_points = {{"pressure", pressures},

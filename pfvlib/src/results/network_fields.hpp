@@ -6,6 +6,8 @@
 
 namespace pfv {
 
+/// See Flow::pore_volumes.
+Eigen::VectorXd pore_volumes(const BuiltNetwork& built);
 /// See Flow::fields.
 FieldGrid network_fields(const BuiltNetwork& built, const Solution& solution,
                          const Balance& balance);

@@ -99,6 +99,24 @@ void refuse_open_pores(const BuiltNetwork& built) {
                    culprits_of(built, spheres, {pore}));
 }
 
+namespace {
+
+/// What goes in comes out, and something does.
+bool fluxes_balance(const Container& container) {
+  double sum = 0.0, largest = 0.0;
+  const auto add = [&](const Boundary& boundary) {
+    if (!boundary.drives_flux()) return;
+    sum += boundary.value;
+    largest = std::max(largest, std::abs(boundary.value));
+  };
+  for (const ContainerFace& face : container.faces) add(face.boundary);
+  for (const ContainerPatch& patch : container.patches) add(patch.boundary);
+  for (const Region& region : container.regions) add(region.boundary);
+  return largest > 0.0 && std::abs(sum) <= 1e-9 * largest;
+}
+
+}  // namespace
+
 void refuse_undetermined(const Problem& problem, bool moving) {
   const auto& [container, fluid, options, team] = problem;
   // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
@@ -108,6 +126,9 @@ void refuse_undetermined(const Problem& problem, bool moving) {
     throw InputError("the grains or faces move, the fluid is incompressible, and no face, patch "
                      "or region has a pressure: nothing determines the pressure; give a pressure to a face, "
                      "or a bulk modulus");
+  if (fluxes_balance(container))
+    throw InputError("fluxes are imposed that balance, the fluid is incompressible, and no face, patch or region has a "
+                     "pressure: its level is not determined; give one of the faces a pressure in place of its flux");
   if (any_boundary(container, &Boundary::drives_flux))
     throw InputError("a flux is imposed, the fluid is incompressible, and no face, patch or region has a "
                      "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
