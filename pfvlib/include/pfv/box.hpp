@@ -124,7 +124,9 @@ struct Box {
   std::array<FaceCondition, 6> faces;
   std::vector<Patch> patches;
   std::vector<Region> regions;
-  /// Axes along which the packing repeats; their two faces do not exist (they stay sealed, at rest).
+  /// Axes along which the packing repeats; their two faces do not exist (they stay sealed). A difference of
+  /// their velocities stretches the cell: an image n lengths L away moves by n dL/dt beside its sphere, and a
+  /// sphere has the velocity that belongs to where the packing has it.
   std::array<bool, 3> periodic{false, false, false};
   /// Macroscopic pressure gradient along the periodic axes, Pa/m: the pressure is a periodic field plus
   /// gradient . x, and fluid flows against it.

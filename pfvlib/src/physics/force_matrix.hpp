@@ -20,6 +20,7 @@ namespace pfv {
 struct ForceMatrix {
   int spheres = 0;
   bool wall_moments = false;  ///< it has those on walls
+  bool stretching = false;    ///< it has the rows of a periodic cell's faces (physics/cell_stretching.hpp)
   std::vector<int> row_begin{0};
   std::vector<int> pore;
   Matrix6Xd value;

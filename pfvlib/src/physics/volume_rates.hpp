@@ -58,6 +58,7 @@ struct VolumeRateMatrix {
   std::vector<Vertex> mover;  ///< the sphere, or the wall
   int spheres = 0;
   Eigen::Matrix3Xd area;
+  bool stretching = false;  ///< it has the faces of a periodic cell among its movers (physics/cell_stretching.hpp)
 
   int rows() const { return static_cast<int>(row_begin.size()) - 1; }
 };

@@ -59,9 +59,10 @@ void check_periodic(const Box& box) {
   }
   for (const Face face : all_faces)
     if (box.periodic[axis_of(face)] &&
-        (box[face].boundary.is_open() || box[face].velocity != 0.0))
+        (box[face].boundary.is_open() || !box[face].sliding.isZero(0.0) || box[face].spin != 0.0))
       throw InputError(std::string("face ") + name_of(face) +
-                       " stands on a periodic axis: it can have neither a boundary nor a velocity");
+                       " stands on a periodic axis: it can have neither a boundary nor a motion in its own plane; "
+                       "its velocity stretches the cell");
   for (const Patch& patch : box.patches)
     if (box.periodic[axis_of(patch.face)])
       throw InputError(std::string("a patch on face ") + name_of(patch.face) +

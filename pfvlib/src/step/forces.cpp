@@ -106,7 +106,10 @@ std::vector<FaceResult> face_forces(const BuiltNetwork& built, const Solution& s
     faces[f].name = solution.container.faces[f].name;
     faces[f].force_pressure =
         pushes.col(f) + on_growth.col(f).head<3>() + solution.reference * solution.geometry.loads.col(f).head<3>();
-    if (solution.loads.cols() > 0) faces[f].force_viscous = solution.loads.col(spheres + f).head<3>();
+    if (solution.loads.cols() == 0) continue;
+    // on a periodic face that moves the fluid's stress, whatever carries it
+    const bool periodic = f < 6 && solution.container.periodic[f / 2];
+    (periodic ? faces[f].force_pressure : faces[f].force_viscous) += solution.loads.col(spheres + f).head<3>();
   }
   return faces;
 }

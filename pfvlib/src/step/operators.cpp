@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/operators.hpp"
 
+#include "physics/cell_stretching.hpp"
+
 #include <algorithm>
 
 namespace pfv {
@@ -10,21 +12,29 @@ void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& coun
   const bool turning = std::any_of(faces.begin(), faces.end(), [](const ContainerFace& face) {
     return !face.angular_velocity.isZero(0.0);
   });
-  const bool enough = built.operators.force_matrix && (!turning || built.operators.force_matrix->wall_moments);
-  if (enough) return;
+  const bool stretching = stretches(problem.container);
+  const auto& kept = built.operators.force_matrix;
+  if (kept && (!turning || kept->wall_moments) && (!stretching || kept->stretching)) return;
   built.operators.viscous_shares =
       viscous_shares(problem.options.conductance, built.network, built.throats, built.vertices);
   built.operators.force_matrix =
       force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
                    built.grains.spheres.size(), {true, true, problem.options.torques, turning},
                    *problem.team);
+  if (stretching) {
+    add_stretching(*built.operators.force_matrix, built.network, built.grains.spheres, built.vertices,
+                   built.throats, built.operators.viscous_shares);
+  }
+  built.operators.sum_order.reset();
   ++counts.force_matrix;
 }
 
 void make_volume_rates(BuiltNetwork& built, const Problem& problem, Counts& counts) {
   if (problem.options.volume_rates == VolumeRates::geometric) {
-    if (!built.operators.geometric_rates)
-      built.operators.geometric_rates = volume_rate_matrix(built.network, built.vertices);
+    auto& rates = built.operators.geometric_rates;
+    if (!rates) rates = volume_rate_matrix(built.network, built.vertices);
+    if (!rates->stretching && stretches(problem.container))
+      add_stretching(*rates, built.network, built.grains.spheres, built.vertices);
     return;
   }
   make_force_matrix(built, problem, counts);

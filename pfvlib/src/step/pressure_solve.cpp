@@ -2,6 +2,7 @@
 #include "step/pressure_solve.hpp"
 
 #include "pfv/error.hpp"
+#include "physics/cell_stretching.hpp"
 #include "physics/macroscopic_gradient.hpp"
 #include "problem/solver_abilities.hpp"
 #include "step/continuity.hpp"
@@ -9,7 +10,30 @@
 #include "step/operators.hpp"
 #include "work/phase_clock.hpp"
 
+#include <cmath>
+
 namespace pfv {
+
+namespace {
+
+/// The velocities of the spheres as the network holds them, which may be images of where the host has them: in a
+/// periodic cell that stretches, those move by so much more.
+void move_with_images(const BuiltNetwork& built, const Problem& problem, const Packing& packing, Motion& motion) {
+  const Container& container = problem.container;
+  const std::vector<int>& columns = built.grains.columns;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!container.periodic[axis]) continue;
+    const double length = container.upper[axis] - container.lower[axis];
+    const double stretching = container.faces[2 * axis + 1].velocity[axis] - container.faces[2 * axis].velocity[axis];
+    for (std::size_t i = 0; i < columns.size() && stretching != 0.0; ++i) {
+      const auto own = static_cast<Eigen::Index>(i);
+      const double way = built.grains.spheres.centres(axis, own) - (packing.positions(axis, columns[i]) - container.lower[axis]);
+      motion(axis, own) += std::round(way / length) * stretching;
+    }
+  }
+}
+
+}  // namespace
 
 void set_motion(const BuiltNetwork& built, const Problem& problem, const Packing& packing,
                 Motion& motion) {
@@ -21,6 +45,7 @@ void set_motion(const BuiltNetwork& built, const Problem& problem, const Packing
     if (problem.options.torques && packing.angular_velocities.cols() > 0)
       own.tail<3>() = packing.angular_velocities.col(columns[i]);
   }
+  if (stretches(problem.container)) move_with_images(built, problem, packing, motion);
   set_faces(motion, problem.container, built.network.origin);
 }
 

@@ -4,6 +4,7 @@
 
 #include "network/facets.hpp"
 #include "pfv/error.hpp"
+#include "physics/cell_stretching.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
 
@@ -169,10 +170,14 @@ SolverError too_far_apart(const BuiltNetwork& built, const Fluid& fluid,
 
 namespace {
 
-/// Where grains and faces move all alike, every rate is the round-off (m³/s) of what cancels in it.
+/// Where grains and faces move all alike, every rate is the round-off (m³/s) of what cancels in it. A cell that
+/// is stretched at constant volume has lengths that are known to their own round-off.
 double rounding_of_rates(const BuiltNetwork& built, const Solution& solution) {
   constexpr double round_off = 1e-13;
-  return solution.moving ? round_off * gross_rates(built, solution.motion).maxCoeff() : 0.0;
+  if (!solution.moving) return 0.0;
+  const double of_sums = round_off * gross_rates(built, solution.motion).maxCoeff();
+  if (!(solution.dt > 0.0) || !stretches(solution.container)) return of_sums;
+  return of_sums + round_off * solution.geometry.volume / solution.dt;
 }
 
 /// What must leave an isolated set of pores, m³/s, and what it is the sum of.
