@@ -147,6 +147,9 @@ void parse_face(Words& words, PfvSettings& settings) {
   if (settings.container) return parse_container_face(words, settings);
   const auto name = words.choice<pfv::Face>();
   const auto number = static_cast<std::size_t>(name);
+  if (settings.sources[number].kind == Source::periodic)
+    words.fail(std::string("the simulation box is periodic along ") + "xyz"[number / 2] +
+               " and has no faces there; take this face out, or use `boundary f` along that axis");
   if (settings.sources[number].kind != Source::none) words.fail(face_given_twice(name));
   take_source(words, settings.sources[number], false);
   take_condition(words, number, settings, settings.box[name]);
@@ -154,6 +157,9 @@ void parse_face(Words& words, PfvSettings& settings) {
 
 /// From here on the faces have names of their own and may be walls at any angle.
 void parse_container(Words& words, PfvSettings& settings) {
+  if (settings.box.any_periodic())
+    throw pfv::InputError("container: it is closed by walls alone, and the simulation box is periodic; use "
+                          "`boundary f f f`, or the faces of a box in the place of the container");
   for (const PfvFaceSource& source : settings.sources)
     if (source.kind != Source::none) words.fail("container must come before the faces");
   settings.container = true;
@@ -186,6 +192,21 @@ void parse_place(Words& words, PfvSettings& settings, bool point) {
 }
 void parse_region(Words& words, PfvSettings& settings) { parse_place(words, settings, false); }
 void parse_point(Words& words, PfvSettings& settings) { parse_place(words, settings, true); }
+
+/// Pa/m, along periodic axes.
+void parse_gradient(Words& words, PfvSettings& settings) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto number = static_cast<std::size_t>(axis);
+    unbind(settings, Of::gradient, number);
+    const std::size_t bound = settings.bindings.size();
+    settings.box.pressure_gradient[axis] =
+        take_value(words, std::string("the gradient along ") + "xyz"[axis], {Of::gradient, number, {}}, settings);
+    if (!settings.box.periodic[axis] &&
+        (settings.box.pressure_gradient[axis] != 0.0 || settings.bindings.size() > bound))
+      words.fail(std::string("the simulation box is not periodic along ") + "xyz"[axis] +
+                 ": give 0 there and pressures to its faces, or use `boundary p` along that axis");
+  }
+}
 
 void parse_pressure_profile(Words& words, PfvSettings& settings) {
   if (settings.container) words.fail("a container has no pressure_profile; it needs the faces of a box");
@@ -252,6 +273,7 @@ constexpr Keyword keywords[]{{"container", false, parse_container},
                              {"patch", true, parse_patch},
                              {"region", true, parse_region},
                              {"point", true, parse_point},
+                             {"gradient", false, parse_gradient},
                              {"pressure_profile", true, parse_pressure_profile},
                              {"output", false, parse_fields},
                              {"profile", false, parse_profile},
@@ -333,6 +355,8 @@ bool modify_face(const std::string& keyword, Words& words, PfvSettings& settings
   for (const pfv::BoundaryKind& kind : pfv::boundary_kinds) {
     if (keyword != kind.name) continue;
     const std::size_t number = take_face_number(words, settings);
+    if (settings.sources[number].kind == Source::periodic)
+      words.fail("the simulation box is periodic there and has no faces; take `gradient GX GY GZ`");
     for (const Of of : {Of::face, Of::mean, Of::amplitude}) unbind(settings, of, number);
     if (!settings.container) settings.profiles[number].reset();
     (settings.container ? settings.faces[number].boundary : settings.box.faces[number].boundary) =
@@ -353,8 +377,11 @@ void modify_setting(const pfv::Setting& setting, Words& words, PfvSettings& sett
 
 }  // namespace
 
-PfvSettings parse_pfv(int narg, char** arg) {
+PfvSettings parse_pfv(int narg, char** arg, const std::array<bool, 3>& periodic) {
   PfvSettings settings;
+  settings.box.periodic = periodic;
+  for (std::size_t face = 0; face < 6; ++face)
+    if (periodic[face / 2]) settings.sources[face].kind = Source::periodic;
   settings.options.outside = pfv::OutsideGrains::leave_out;
   settings.options.sphere_pressure = true;
   Words words({arg, arg + narg});
@@ -374,8 +401,10 @@ int modify_pfv(PfvSettings& settings, int narg, char** arg) {
   const pfv::Setting* setting = pfv::setting_named(keyword);
   if (setting && setting->hosts.modify) {
     modify_setting(*setting, words, changed);
+  } else if (keyword == "gradient") {
+    parse_gradient(words, changed);
   } else if (!modify_face(keyword, words, changed)) {
-    std::string known = settings_with(&pfv::Hosts::modify);
+    std::string known = settings_with(&pfv::Hosts::modify) + ", gradient";
     for (const pfv::BoundaryKind& kind : pfv::boundary_kinds) append(known, kind.name);
     throw pfv::InputError("fix_modify knows no keyword '" + keyword + "'; there are " + known);
   }
@@ -390,6 +419,7 @@ double& bound_number(PfvSettings& settings, const PfvBinding& binding) {
     case Of::region: return settings.box.regions[binding.number].boundary.value;
     case Of::mean: return settings.profiles[binding.number]->mean;
     case Of::amplitude: return settings.profiles[binding.number]->amplitude;
+    case Of::gradient: return settings.box.pressure_gradient[static_cast<Eigen::Index>(binding.number)];
     case Of::face: break;
   }
   if (settings.container) return settings.faces[binding.number].boundary.value;

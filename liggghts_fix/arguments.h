@@ -18,7 +18,7 @@ namespace LAMMPS_NS {
 
 /// Where a face is.
 struct PfvFaceSource {
-  enum class Kind { none, plane, wall, mesh, extent };
+  enum class Kind { none, plane, wall, mesh, extent, periodic };
   Kind kind = Kind::none;
   double plane = 0.0;  ///< of a box, m
   std::string fix_id;  ///< of the wall or mesh
@@ -36,9 +36,9 @@ struct PfvCosine {
 
 /// A number that an equal-style variable gives anew at each flow step.
 struct PfvBinding {
-  enum class Of { face, patch, region, mean, amplitude };
+  enum class Of { face, patch, region, mean, amplitude, gradient };
   Of of = Of::face;
-  std::size_t number = 0;  ///< of the face, patch or region
+  std::size_t number = 0;  ///< of the face, patch, region or axis
   std::string variable;
 };
 
@@ -77,8 +77,9 @@ struct PfvSettings : pfv::Settings {
 };
 
 /// The settings of `fix ID group pfv ...`; `arg` holds the words behind the style. Throws
-/// pfv::InputError. Of a container the walls have still to be found (`find_walls`).
-PfvSettings parse_pfv(int narg, char** arg);
+/// pfv::InputError. `periodic`: axes along which the simulation box is periodic; they have no faces to give. Of a
+/// container the walls have still to be found (`find_walls`).
+PfvSettings parse_pfv(int narg, char** arg, const std::array<bool, 3>& periodic);
 
 /// Applies one keyword of `fix_modify ID ...` and returns the number of words it took. Throws
 /// pfv::InputError, also for a keyword that cannot be modified.

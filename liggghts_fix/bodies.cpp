@@ -142,9 +142,10 @@ double PfvBodies::mass_of(const Body& body, const pfv::Packing& packing) const {
   if (!body.free) return std::numeric_limits<double>::infinity();
   const Eigen::Map<const Eigen::Vector3d> centre(&body.numbers[3]), inertia(&body.numbers[6]);
   const Eigen::Map<const Eigen::Matrix3d> axes(&body.numbers[9]);
+  const PfvPeriodicCell cell(lmp);
   double sum = 0.0;
   for (const int k : body.columns)
-    sum += mobility(packing.positions.col(k) - centre, body.numbers[2], inertia, axes);
+    sum += mobility(cell.image_near(packing.positions.col(k), centre) - centre, body.numbers[2], inertia, axes);
   return 1.0 / sum;
 }
 
@@ -156,9 +157,11 @@ Eigen::VectorXd PfvBodies::volumes_of(int tag, const Body& body, const pfv::Pack
   const auto known = known_.find(tag);
   if (known != known_.end() && known->second.tags == now.tags && known->second.radii == now.radii)
     return known->second.volumes;
-  const Eigen::Matrix3Xd centres = packing.positions(Eigen::all, body.columns);
+  Eigen::Matrix3Xd centres = packing.positions(Eigen::all, body.columns);
   const bool whole = static_cast<double>(body.columns.size()) == body.numbers[1];
   const Eigen::Map<const Eigen::Vector3d> centre(&body.numbers[3]);
+  for (Eigen::Index i = 0; i < centres.cols(); ++i)
+    centres.col(i) = PfvPeriodicCell(lmp).image_near(centres.col(i), centre);
   now.volumes = whole ? pfv::displaced_volumes(centres, now.radii, centre)
                       : pfv::union_parts(centres, now.radii);
   return (known_[tag] = now).volumes;

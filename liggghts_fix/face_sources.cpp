@@ -225,6 +225,8 @@ void PfvFaceSources::read() {
       set_motion_of_mesh(shapes_[number], meshes_[number], world);
     else if (meshes_[number])
       read_mesh(number);
+    else if (sources_[number].kind == Source::periodic)
+      positions_[number] = number % 2 == 1 ? domain->boxhi[number / 2] : domain->boxlo[number / 2];
     if (!container_) continue;
     // any motion changes the distance from some place far off
     const Eigen::Vector3d far(1.7e3, -2.3e3, 3.1e3);

@@ -29,10 +29,10 @@ namespace LAMMPS_NS {
 
 using namespace FixConst;
 
-FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), grains_(lmp), bodies_(lmp) {
+FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), cell_(lmp), grains_(lmp), bodies_(lmp) {
   check_environment();
   everywhere([&] {
-    settings_ = parse_pfv(narg - 3, arg + 3);
+    settings_ = parse_pfv(narg - 3, arg + 3, cell_.axes());
     left_out_ = PfvFoundWalls(lmp).complete(settings_);
   });
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
@@ -75,6 +75,7 @@ void FixPfv::init() {
   check_variables();
   check_other_fixes();
   bind_coupling();
+  check_cell();
   everywhere([&] { faces_.bind(settings_); });
   array_atom = per_atom_->array_atom;
   // computes behind variables have to be ready for the setup's evaluation
@@ -133,8 +134,27 @@ void FixPfv::check_environment() {
     stop(FLERR, "needs atoms with radius, mass and tag; use `atom_style granular`");
   if (atom->superquadric_flag)
     stop(FLERR, "needs spheres; superquadric atoms have no pore network");
-  if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
-    stop(FLERR, "needs a box without periodic sides; use `boundary f f f`");
+  const char* instead = other_fluid();
+  if (!instead) return;
+  const std::string message = std::string("takes the place of `fix couple/cfd`, and ") + instead +
+      " stands beside it: take out all lines of couple/cfd, and give fix pfv the fluid's viscosity and density and "
+      "the faces of its box (doc/from_couple_cfd.md)";
+  stop(FLERR, message);
+}
+
+/// A fix of another fluid, or null.
+const char* FixPfv::other_fluid() const {
+  for (int i = 0; i < modify->nfix; ++i)
+    if (modify->fix[i] && std::strncmp(modify->fix[i]->style, "couple/cfd", 10) == 0) return modify->fix[i]->style;
+  return nullptr;
+}
+
+/// What was known when the fix was made, and may have changed since.
+void FixPfv::check_cell() {
+  if (cell_.axes() != settings_.box.periodic)
+    stop(FLERR, "the periodic sides of the simulation box have changed since this fix was defined; define it anew");
+  const std::string obstacle = cell_.obstacle(adapts() ? 0 : settings_.steps.couple_every, rigid_bodies_);
+  if (!obstacle.empty()) stop(FLERR, obstacle);
 }
 
 void FixPfv::check_variables() {
@@ -168,7 +188,7 @@ void FixPfv::check_other_fixes() {
 
 /// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
-  grains_.gather(groups_, needs_forces());
+  grains_.gather(groups_, needs_forces(), cell_.streaming(since_.cell_rates));
   bodies_.apply(groups_, settings_.options.buoyancy && !settings_.fluid.gravity.isZero(0.0), grains_);
   everywhere([&] { faces_.read(); });
   pistons_ = faces_.pistons(needs_forces());
@@ -202,14 +222,16 @@ void FixPfv::begin_anew_where_moved() {
     if (!flow_ || !left_) return;
     const pfv::Packing packing = grains_.packing();
     faces_.follow_grains(packing.positions, packing.radii);
-    moved = !left_->is(packing, faces_.positions());
+    PfvLeftState now = state_of(grains_);
+    moved = !(*left_ == now);
     if (!moved) return;
     flow_->rebuild();
-    left_ = left_state(packing, faces_.positions());
+    left_ = std::move(now);
   });
   MPI_Bcast(&moved, 1, MPI_INT, 0, world);
   if (!moved) return;
   bodies_.forget();
+  since_.cell_rates = {};
   read_host();
   since_.steps = 0;
   since_.time = 0.0;
@@ -226,8 +248,14 @@ void FixPfv::remember_state() {
   on_root([&] {
     const pfv::Packing packing = now.packing();
     if (packing.size() > 0) faces_.follow_grains(packing.positions, packing.radii);
-    if (flow_) left_ = left_state(packing, faces_.positions());
+    if (flow_) left_ = state_of(now);
   });
+}
+
+PfvLeftState FixPfv::state_of(const PfvGrainExchange& grains) {
+  Eigen::Matrix3Xd positions = grains.packing().positions;
+  cell_.wrap(positions);
+  return left_state(grains.packing(), positions, faces_.positions());
 }
 
 Eigen::Vector3d FixPfv::gravity() const {
@@ -249,10 +277,13 @@ void FixPfv::pre_force(int) { faces_.begin_forces(); }
 /// The forces of the present state, without advancing the flow: a run begins.
 void FixPfv::setup(int) {
   settings_.fluid.gravity = gravity();
+  if (!cell_.changes()) since_.cell_rates = {};
   read_host();
   begin_anew_where_moved();
   container_ = current_container();
-  if (since_.steps == 0) since_.face_positions = faces_.positions();
+  // fix deform changes the cell after the last flow step of a run: that is part of the next run's first interval
+  const bool goes_on = since_.steps > 0 || (cell_.any() && !since_.face_positions.empty());
+  if (!goes_on) since_.face_positions = faces_.positions();
   if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
   const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, settings_);
   on_root([&] {
@@ -264,7 +295,7 @@ void FixPfv::setup(int) {
     call_flow(flow_step(), false);
     say_what_holds_the_fluid();
     say_what_is_filled();
-    if (since_.steps == 0) since_.grains = grains_.snapshot();
+    if (!goes_on || since_.grains.tags.empty()) since_.grains = grains_.snapshot();
     check_time_step();
     if (plan_) plan_->restart();
     left_.reset();
@@ -290,21 +321,23 @@ void FixPfv::advance() {
   const int steps = since_.steps;
   since_.steps = 0;
   ++taken_.solves;
+  if (cell_.any()) since_.cell_rates = cell_.rates_since(since_.face_positions, since_.time);
   read_host();
   container_ = current_container();
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
   const bool mean = settings_.steps.couple_every > 1 || (adapts() && steps > 1);
   if (mean) use_mean_velocities_of_faces();
+  const Eigen::Vector3d lengths = cell_lengths_then();
   since_.face_positions = faces_.positions();
   since_.pivots = faces_.pivots();
   on_root([&] {
     place_faces(container_);
-    if (mean) grains_.use_mean_velocities(since_.grains, since_.time);
+    if (mean) grains_.use_mean_velocities(since_.grains, since_.time, lengths);
     flow_->set_container(container_);
     call_flow(since_.time, true);
     watch_time_step();
-    if (mean || adapts()) since_.grains = grains_.snapshot();
+    if (mean || adapts() || cell_.changes()) since_.grains = grains_.snapshot();
   });
   since_.time = 0.0;
   if (adapts()) plan_next_solve(steps);
@@ -314,7 +347,7 @@ void FixPfv::advance() {
 void FixPfv::after_flow_call() {
   on_root([&] {
     report_.reset();
-    files_->write(*flow_, grains_.packing(), update->ntimestep);
+    files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep);
   });
   grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{},
                   comm->me == 0 && plan_ ? &plan_->interval().held() : nullptr,
@@ -369,6 +402,7 @@ void FixPfv::write_restart(FILE* file) {
   record.steps_since_flow = since_.steps;
   record.elapsed = since_.time;
   record.last_positions = since_.face_positions;
+  record.cell_rates = since_.cell_rates;
   on_root([&] {
     if (flow_) {
       place_faces(container_);
@@ -380,7 +414,8 @@ void FixPfv::write_restart(FILE* file) {
     } else if (restored_) {
       record.flow = *restored_;
     }
-    if (settings_.steps.couple_every > 1 || settings_.steps.couple_error) record.last_grains = since_.grains;
+    if (settings_.steps.couple_every > 1 || settings_.steps.couple_error || cell_.changes())
+      record.last_grains = since_.grains;
     record.written = files_->written();
     const std::vector<double> data = pack(record);
     const int bytes = static_cast<int>(data.size() * sizeof(double));
@@ -396,6 +431,7 @@ void FixPfv::restart(char* bytes) {
     since_.steps = record.steps_since_flow;
     since_.time = record.elapsed;
     since_.face_positions = record.last_positions;
+    since_.cell_rates = record.cell_rates;
     if (!files_) return;  // not rank 0
     since_.grains = std::move(record.last_grains);
     restored_ = std::move(record.flow);

@@ -67,6 +67,8 @@ class FixPfv : public Fix {
 
   // refusals
   void check_environment();
+  const char* other_fluid() const;
+  void check_cell();
   void check_variables();
   void check_other_fixes();
 
@@ -78,6 +80,9 @@ class FixPfv : public Fix {
   void prepare_flow(const pfv::Container& container);
   void place_faces(pfv::Container& container);
   void use_mean_velocities_of_faces();
+  void move_cell(pfv::Container& container) const;
+  Eigen::Vector3d cell_lengths_then() const;
+  PfvLeftState state_of(const PfvGrainExchange& grains);
   void begin_anew_where_moved();
   void remember_state();
   void warn_of_empty_box() const;
@@ -118,6 +123,7 @@ class FixPfv : public Fix {
   PfvSettings settings_;
   std::vector<std::string> left_out_;  ///< walls that are no faces, each with the reason
   PfvFaceSources faces_;
+  PfvPeriodicCell cell_;
   PfvGrainExchange grains_;
   PfvBodies bodies_;
   PfvGroups groups_;
@@ -132,6 +138,7 @@ class FixPfv : public Fix {
     double time = 0.0;                       // s
     std::vector<double> face_positions;      // at it
     std::vector<Eigen::Vector3d> pivots;     // of a container's faces
+    PfvCellRates cell_rates{};               // of a periodic cell, over the interval that ended with it
     PfvSnapshot grains;                      // at it; rank 0
   } since_;
   struct Taken {

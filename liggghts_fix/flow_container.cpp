@@ -54,12 +54,31 @@ pfv::Box box_with_conditions(const PfvSettings& settings, const PfvFaceSources& 
 /// Boundary conditions and velocities of the faces; their positions follow in place_faces.
 pfv::Container FixPfv::current_container() {
   update_bound_numbers();
-  if (!settings_.container) return box_with_conditions(settings_, faces_);
+  if (!settings_.container) {
+    pfv::Container box = box_with_conditions(settings_, faces_);
+    if (cell_.any()) move_cell(box);
+    return box;
+  }
   pfv::Container container;
   container.faces = settings_.faces;
   container.regions = settings_.box.regions;
   for (int number = 0; number < container.face_count(); ++number) faces_.set_motion(number, container.faces[number]);
   return container;
+}
+
+/// The faces of a periodic cell move as the simulation box has moved over the last interval.
+void FixPfv::move_cell(pfv::Container& container) const {
+  for (int number = 0; number < pfv::face_count; ++number)
+    container.faces[number].velocity[number / 2] +=
+        settings_.box.periodic[number / 2] ? since_.cell_rates[number] : 0.0;
+}
+
+/// Lengths of the cell at the last flow step, m; 0 along axes that are not periodic.
+Eigen::Vector3d FixPfv::cell_lengths_then() const {
+  Eigen::Vector3d lengths = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (settings_.box.periodic[axis]) lengths[axis] = since_.face_positions[2 * axis + 1] - since_.face_positions[2 * axis];
+  return lengths;
 }
 
 /// Completes the container on rank 0, where the grains are.

@@ -3,9 +3,11 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 
 #include <mpi.h>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr int plain_width = 12;  // tag, place, velocity, radius, mass, spin
 constexpr int loads_width = 7;   // force, torque, inertia
+constexpr int periods_width = 3;
 
 std::vector<int> times(const std::vector<int>& counts, int width) {
   std::vector<int> scaled(counts);
@@ -24,27 +27,12 @@ std::vector<int> times(const std::vector<int>& counts, int width) {
 
 }  // namespace
 
-void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces) {
-  constexpr double immovable = std::numeric_limits<double>::infinity();
+void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces, const PfvStreaming& streaming) {
   groupbit_ = groups.flow;
-  sent_width_ = with_forces ? plain_width + loads_width : plain_width;
-  local_.clear();
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const int mask = atom->mask[i];
-    if (!(mask & groupbit_)) continue;
-    const double *x = atom->x[i], *v = atom->v[i], *spin = atom->omega[i];
-    local_.insert(local_.end(), {static_cast<double>(atom->tag[i]), x[0], x[1], x[2], v[0], v[1],
-                                 v[2], atom->radius[i],
-                                 groups.free(mask) ? atom->rmass[i] : immovable, spin[0], spin[1],
-                                 spin[2]});
-    if (!with_forces) continue;
-    local_.insert(local_.end(), atom->f[i], atom->f[i] + 3);
-    local_.insert(local_.end(), atom->torque[i], atom->torque[i] + 3);
-    local_.push_back(groups.free_to_turn(mask)
-                         ? 0.4 * atom->rmass[i] * atom->radius[i] * atom->radius[i]
-                         : immovable);
-  }
-  local_count_ = static_cast<int>(local_.size()) / sent_width_;
+  with_forces_ = with_forces;
+  periodic_ = PfvPeriodicCell(lmp).any();
+  sent_width_ = plain_width + (with_forces ? loads_width : 0) + (periodic_ ? periods_width : 0);
+  pack_mine(groups, streaming);
 
   counts_.resize(comm->nprocs);
   offsets_.resize(comm->nprocs);
@@ -57,6 +45,35 @@ void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces) {
               times(counts_, sent_width_).data(), times(offsets_, sent_width_).data(), MPI_DOUBLE, 0,
               world);
   if (comm->me == 0) sort_by_tag();
+}
+
+void PfvGrainExchange::pack_mine(const PfvGroups& groups, const PfvStreaming& streaming) {
+  constexpr double immovable = std::numeric_limits<double>::infinity();
+  const PfvPeriodicCell cell(lmp);
+  local_.clear();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int mask = atom->mask[i];
+    if (!(mask & groupbit_)) continue;
+    const double *x = atom->x[i], *v = atom->v[i], *spin = atom->omega[i];
+    local_.insert(local_.end(), {static_cast<double>(atom->tag[i]), x[0], x[1], x[2], v[0], v[1],
+                                 v[2], atom->radius[i],
+                                 groups.free(mask) ? atom->rmass[i] : immovable, spin[0], spin[1],
+                                 spin[2]});
+    if (mask & streaming.groupbit)
+      for (int k = 0; k < 3; ++k)
+        local_[local_.size() - plain_width + 4 + k] += streaming.drift[k] + streaming.rate[k] * (x[k] - streaming.origin[k]);
+    if (with_forces_) {
+      local_.insert(local_.end(), atom->f[i], atom->f[i] + 3);
+      local_.insert(local_.end(), atom->torque[i], atom->torque[i] + 3);
+      local_.push_back(groups.free_to_turn(mask)
+                           ? 0.4 * atom->rmass[i] * atom->radius[i] * atom->radius[i]
+                           : immovable);
+    }
+    if (!periodic_) continue;
+    const Eigen::Vector3d periods = cell.periods(i);
+    local_.insert(local_.end(), periods.begin(), periods.end());
+  }
+  local_count_ = static_cast<int>(local_.size()) / sent_width_;
 }
 
 void PfvGrainExchange::sort_by_tag() {
@@ -79,10 +96,11 @@ void PfvGrainExchange::sort_by_tag() {
   grains_.angular_velocities.resize(3, count);
   masses_.resize(count);
   grains_.displaced_volumes.resize(0);
-  const bool with_forces = sent_width_ > plain_width;
-  forces_.resize(3, with_forces ? count : 0);
-  torques_.resize(3, with_forces ? count : 0);
-  inertias_.resize(with_forces ? count : 0);
+  forces_.resize(3, with_forces_ ? count : 0);
+  torques_.resize(3, with_forces_ ? count : 0);
+  inertias_.resize(with_forces_ ? count : 0);
+  unwrapped_.resize(3, periodic_ ? count : 0);
+  const Eigen::Map<const Eigen::Vector3d> lengths(domain->prd);
   for (int k = 0; k < count; ++k) {
     const double* row = &received_[std::size_t(sent_width_) * order_[k]];
     grains_.ids[k] = static_cast<std::int64_t>(row[0]);
@@ -91,21 +109,27 @@ void PfvGrainExchange::sort_by_tag() {
     grains_.radii[k] = row[7];
     masses_[k] = row[8];
     grains_.angular_velocities.col(k) << row[9], row[10], row[11];
-    if (!with_forces) continue;
+    if (periodic_)
+      unwrapped_.col(k) = grains_.positions.col(k) +
+                          Eigen::Map<const Eigen::Vector3d>(row + sent_width_ - periods_width).cwiseProduct(lengths);
+    if (!with_forces_) continue;
     forces_.col(k) << row[12], row[13], row[14];
     torques_.col(k) << row[15], row[16], row[17];
     inertias_[k] = row[18];
   }
 }
 
-void PfvGrainExchange::use_mean_velocities(const PfvSnapshot& then, double elapsed) {
+void PfvGrainExchange::use_mean_velocities(const PfvSnapshot& then, double elapsed, const Eigen::Vector3d& lengths) {
   std::size_t old = 0;
   for (Eigen::Index k = 0; k < grains_.ids.size(); ++k) {
     while (old < then.tags.size() && then.tags[old] < grains_.ids[k]) ++old;
     if (old == then.tags.size()) return;
     if (then.tags[old] != grains_.ids[k]) continue;
     const Eigen::Map<const Eigen::Vector3d> place(&then.places[3 * old]);
-    grains_.velocities.col(k) = (grains_.positions.col(k) - place) / elapsed;
+    Eigen::Vector3d moved = grains_.positions.col(k) - place;
+    for (int axis = 0; axis < 3; ++axis)
+      if (lengths[axis] > 0.0) moved[axis] -= lengths[axis] * std::round(moved[axis] / lengths[axis]);
+    grains_.velocities.col(k) = moved / elapsed;
   }
 }
 

@@ -4,6 +4,7 @@
 #define LMP_PFV_GRAIN_EXCHANGE_H
 
 #include "other_fixes.h"
+#include "periodic_cell.h"
 
 #include "pfv/flow_model.hpp"
 #include "pfv/packing.hpp"
@@ -28,13 +29,17 @@ class PfvGrainExchange : protected Pointers {
   /// Collects tag, place, velocity, radius, mass and spin of the flow's grains on rank 0, on demand with
   /// the force and torque that act on them so far; collective. They are sorted by tag there, so that the flow
   /// sees the same packing however LIGGGHTS has spread and sorted its atoms.
-  void gather(const PfvGroups& groups, bool with_forces);
+  /// `streaming`: what the host moves grains by beside their velocities, which then hold it.
+  void gather(const PfvGroups& groups, bool with_forces, const PfvStreaming& streaming = {});
 
   /// Replaces the velocities by mean ones since `then`, `elapsed` seconds ago; rank 0. Grains that
-  /// were not there then keep their own.
-  void use_mean_velocities(const PfvSnapshot& then, double elapsed);
+  /// were not there then keep their own. Along periodic axes from the image that is nearest: a grain that has
+  /// been wrapped has the velocity of that image, where `lengths` are those of the cell then (0: not periodic).
+  void use_mean_velocities(const PfvSnapshot& then, double elapsed, const Eigen::Vector3d& lengths);
 
   pfv::Packing packing() const { return grains_.view(); }    ///< as gathered; rank 0
+  /// Positions without the wrapping of periodic axes, m; rank 0.
+  const Eigen::Matrix3Xd& unwrapped() const { return unwrapped_.cols() > 0 ? unwrapped_ : grains_.positions; }
   /// kg, infinite for a grain that no force moves; rank 0.
   const Eigen::VectorXd& masses() const { return masses_; }
   /// Masses and forces of the last gathering with forces, and these pistons; rank 0.
@@ -63,9 +68,11 @@ class PfvGrainExchange : protected Pointers {
   double memory_usage() const;
 
  private:
+  void pack_mine(const PfvGroups& groups, const PfvStreaming& streaming);
   void sort_by_tag();
 
   int groupbit_ = 0;
+  bool with_forces_ = false, periodic_ = false;
   int sent_width_ = 0;  // numbers a grain
   int local_count_ = 0;
   std::vector<double> local_, received_;
@@ -75,6 +82,7 @@ class PfvGrainExchange : protected Pointers {
   pfv::PackingArrays grains_;
   Eigen::VectorXd masses_, inertias_;
   Eigen::Matrix3Xd forces_, torques_;
+  Eigen::Matrix3Xd unwrapped_;  // no columns without periodic axes
 };
 
 }  // namespace LAMMPS_NS

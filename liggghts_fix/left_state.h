@@ -14,17 +14,19 @@ struct PfvLeftState {
   std::vector<double> faces;       ///< m
 
   /// To the last bit: a network is kept only for what it was built from or has followed itself.
-  bool is(const pfv::Packing& packing, const std::vector<double>& positions) const {
-    return packing.size() == grains.ids.size() && packing.ids == grains.ids &&
-           packing.positions == grains.positions && packing.radii == grains.radii &&
-           positions == faces;
+  bool operator==(const PfvLeftState& other) const {
+    const pfv::PackingArrays& others = other.grains;
+    return others.ids.size() == grains.ids.size() && others.ids == grains.ids &&
+           others.positions == grains.positions && others.radii == grains.radii && other.faces == faces;
   }
 };
 
-inline PfvLeftState left_state(const pfv::Packing& packing, const std::vector<double>& faces) {
+/// `positions`: the packing's, wrapped as LIGGGHTS wraps them when a run begins.
+inline PfvLeftState left_state(const pfv::Packing& packing, const Eigen::Matrix3Xd& positions,
+                               const std::vector<double>& faces) {
   PfvLeftState state;
   state.grains.ids = packing.ids;
-  state.grains.positions = packing.positions;
+  state.grains.positions = positions;
   state.grains.radii = packing.radii;
   state.faces = faces;
   return state;

@@ -11,6 +11,7 @@ namespace LAMMPS_NS {
 namespace {
 
 constexpr double format_number = 5.0;
+constexpr double with_cell_rates = 6.0;  // of a periodic cell that changes
 
 class Reader {
  public:
@@ -38,7 +39,8 @@ class Reader {
 }  // namespace
 
 std::vector<double> pack(const PfvRestartRecord& record) {
-  std::vector<double> data{format_number,
+  const bool stretches = record.cell_rates != PfvCellRates{};
+  std::vector<double> data{stretches ? with_cell_rates : format_number,
                            static_cast<double>(record.step),
                            record.flow.time,
                            record.flow.strain,
@@ -50,6 +52,7 @@ std::vector<double> pack(const PfvRestartRecord& record) {
   };
   data.push_back(static_cast<double>(record.last_positions.size()));
   append(record.last_positions);
+  if (stretches) append(record.cell_rates);
   append(std::array<double, 3>{record.flow.volume_debt, record.flow.fluid_at_start,
                                record.flow.fluid_came_in});
   data.push_back(static_cast<double>(record.flow.pore_pressures.size()));
@@ -67,7 +70,8 @@ std::vector<double> pack(const PfvRestartRecord& record) {
 
 PfvRestartRecord unpack(const char* bytes) {
   Reader reader(bytes);
-  if (const double found = reader.next(); found != format_number)
+  const double found = reader.next();
+  if (found != format_number && found != with_cell_rates)
     throw pfv::InputError("the restart file holds this fix in form " +
                           std::to_string(static_cast<int>(found)) + " of an older version, this one reads "
                           "form " + std::to_string(static_cast<int>(format_number)) +
@@ -80,6 +84,8 @@ PfvRestartRecord unpack(const char* bytes) {
   record.steps_since_flow = static_cast<int>(reader.next());
   record.elapsed = reader.next();
   record.last_positions = reader.list<double>(reader.count());
+  if (found == with_cell_rates)
+    for (double& rate : record.cell_rates) rate = reader.next();
   record.flow.volume_debt = reader.next();
   record.flow.fluid_at_start = reader.next();
   record.flow.fluid_came_in = reader.next();

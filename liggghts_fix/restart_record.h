@@ -18,6 +18,7 @@ struct PfvRestartRecord {
   int steps_since_flow = 0;
   double elapsed = 0.0;  ///< s, since the last flow step
   std::vector<double> last_positions;  ///< of the faces
+  PfvCellRates cell_rates{};           ///< m/s, over the last interval
   PfvSnapshot last_grains;
   std::vector<PfvWrittenStep> written;
 };

@@ -121,15 +121,15 @@ void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWritt
 }
 
 void PfvResultFiles::write(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                           std::int64_t step) {
-  if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, step);
+                           const Eigen::Matrix3Xd& unwrapped, std::int64_t step) {
+  if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, unwrapped, step);
   if (profile_file_ && profile_file_->due(step)) profile_file_->write_row(profile_row(flow));
   if (flux_file_ && flux_file_->due(step)) flux_file_->write_row(flux_row(flow));
   if (sensor_file_ && sensor_file_->due(step)) sensor_file_->write_row(sensor_row(flow));
 }
 
 void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                                  std::int64_t step) {
+                                  const Eigen::Matrix3Xd& unwrapped, std::int64_t step) {
   const std::string base = fields_->path.substr(0, fields_->path.rfind(".pvd"));
   const auto fluid = [&](const std::string& stem, std::int64_t s) {
     return stem + "_" + flow.field_name() + "_" + std::to_string(s) + ".vtu";
@@ -138,7 +138,7 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
     return stem + "_grains_" + std::to_string(s) + ".vtu";
   };
   pfv::write_fields(fluid(base, step), flow.fields());
-  pfv::write_spheres(grains(base, step), packing, flow.forces(), sphere_fields(flow, packing));
+  pfv::write_spheres(grains(base, step), packing, flow.forces(), sphere_fields(flow, packing, unwrapped));
   written_.push_back({step, flow.time()});
 
   std::vector<pfv::CollectionEntry> entries;
@@ -151,10 +151,10 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
 }
 
 /// From where each grain was when it was first written, m.
-Eigen::Matrix3Xd PfvResultFiles::displacements(const pfv::Packing& packing) {
+Eigen::Matrix3Xd PfvResultFiles::displacements(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped) {
   Eigen::Matrix3Xd moved(3, packing.size());
   for (Eigen::Index k = 0; k < packing.size(); ++k) {
-    const Eigen::Vector3d place = packing.positions.col(k);
+    const Eigen::Vector3d place = unwrapped.col(k);
     moved.col(k) = place - first_places_.try_emplace(packing.ids[k], place).first->second;
   }
   return moved;
@@ -162,8 +162,9 @@ Eigen::Matrix3Xd PfvResultFiles::displacements(const pfv::Packing& packing) {
 
 /// Velocities and stresses where the model has pores.
 pfv::SphereFields PfvResultFiles::sphere_fields(const pfv::FlowModel& flow,
-                                                const pfv::Packing& packing) {
-  pfv::SphereFields fields{displacements(packing), {}, {}};
+                                                const pfv::Packing& packing,
+                                                const Eigen::Matrix3Xd& unwrapped) {
+  pfv::SphereFields fields{displacements(packing, unwrapped), {}, {}};
   if (const auto* pores = dynamic_cast<const pfv::Flow*>(&flow)) {
     fields.fluid_velocity = pores->sphere_velocities();
     fields.fluid_stress = pores->sphere_stresses();

@@ -64,15 +64,19 @@ class PfvResultFiles {
 
   /// Writes what is due after a flow step, at the flow's own time: LIGGGHTS' `time` begins anew at
   /// each restart. Throws pfv::FileError.
-  void write(const pfv::FlowModel& flow, const pfv::Packing& packing, std::int64_t step);
+  /// `unwrapped`: positions without the wrapping of periodic axes, which displacements are told from.
+  void write(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
+             std::int64_t step);
 
  private:
-  void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, std::int64_t step);
+  void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
+                    std::int64_t step);
   std::vector<double> profile_row(const pfv::FlowModel& flow) const;
   std::vector<double> flux_row(const pfv::FlowModel& flow) const;
   std::vector<double> sensor_row(const pfv::FlowModel& flow) const;
-  pfv::SphereFields sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing);
-  Eigen::Matrix3Xd displacements(const pfv::Packing& packing);
+  pfv::SphereFields sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
+                                  const Eigen::Matrix3Xd& unwrapped);
+  Eigen::Matrix3Xd displacements(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped);
 
   std::optional<PfvFieldOutput> fields_;
   std::optional<PfvProfileOutput> profile_, flux_profile_;

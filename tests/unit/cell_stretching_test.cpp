@@ -223,8 +223,7 @@ TEST(CellStretching, ADrainedCellGivesOffWhatItsVolumeLoses) {
     came_out += dt * (flow.report().outflow - flow.report().inflow);
   }
   EXPECT_GT(flow.retriangulations(), 0);
-  // areas of the middle of a step leave dt^3 Lx' Ly' Lz' / 4 of it: 1.9e-10 here
-  EXPECT_NEAR(came_out / (before - cell.box.volume()), 1.0, 3e-10);
+  EXPECT_NEAR(came_out / (before - cell.box.volume()), 1.0, 1e-12);
   EXPECT_LT(std::abs(flow.report().mass_error), 1e-10);
 }
 

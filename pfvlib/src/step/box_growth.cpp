@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/box_growth.hpp"
 
+#include "physics/cell_stretching.hpp"
+
 namespace pfv {
 
 BoxGrowth growth_of(const Container& container, const ContainerGeometry& present, const BuiltNetwork& built,
@@ -8,6 +10,11 @@ BoxGrowth growth_of(const Container& container, const ContainerGeometry& present
   const Matrix6Xd& as_built = built.geometry.loads;
   const Matrix6Xd now = present.loads - as_built;
   if (!any_face_moves(container)) return {now, now};
+  if (stretches(container)) {  // three lengths may change: Simpson's rule, exact for areas that are squares in time
+    const Matrix6Xd middle = geometry_after(container, ahead, built.network.origin).loads;
+    const Matrix6Xd other_end = geometry_after(container, 2.0 * ahead, built.network.origin).loads;
+    return {(present.loads + 4.0 * middle + other_end) / 6.0 - as_built, now};
+  }
   return {geometry_after(container, ahead, built.network.origin).loads - as_built, now};
 }
 

@@ -41,6 +41,17 @@ std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& no
   return survivors;
 }
 
+/// What a macroscopic gradient has raised the pressure of a cell by, Pa, that the grains have carried across the
+/// border of a periodic cell: the new network has another image of it at home.
+double raised_by_wrapping(const BuiltNetwork& old, int before, const BuiltNetwork& now, int after) {
+  const Eigen::Vector3d& gradient = now.container.pressure_gradient;
+  if (gradient.isZero(0.0)) return 0.0;
+  const Eigen::Vector3d& lengths = now.grains.spheres.edges;
+  const Eigen::Vector3d way = now.network.origin + now.network.cell_centres.col(after) - old.network.origin -
+                              old.network.cell_centres.col(before);
+  return gradient.dot(lengths.cwiseProduct(way.cwiseQuotient(lengths).array().round().matrix()));
+}
+
 }  // namespace
 
 Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values,
@@ -54,7 +65,8 @@ Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd
   Eigen::VectorXi count = Eigen::VectorXi::Zero(now.network.pores());
   for (int c = 0; c < now.network.cells(); ++c)
     if (survivors[c] >= 0) {
-      sum[now.network.cell_pore[c]] += old_values[old.network.cell_pore[survivors[c]]];
+      sum[now.network.cell_pore[c]] +=
+          old_values[old.network.cell_pore[survivors[c]]] + raised_by_wrapping(old, survivors[c], now, c);
       ++count[now.network.cell_pore[c]];
     }
   int cell = 0;

@@ -107,6 +107,11 @@ bool imposed_values_differ(const Container& now, const Container& then, double t
       for (const auto& place : {then.lower, then.upper})
         change = std::max(change, std::abs(a.profile(place, 0.0) - b.profile(place, 0.0)));
   };
+  if (now.pressure_gradient != then.pressure_gradient) {  // what it makes of the cell's length
+    const Eigen::Vector3d length = then.upper - then.lower;
+    change = (now.pressure_gradient - then.pressure_gradient).cwiseProduct(length).cwiseAbs().maxCoeff();
+    largest = now.pressure_gradient.cwiseAbs().cwiseMax(then.pressure_gradient.cwiseAbs()).cwiseProduct(length).maxCoeff();
+  }
   for (std::size_t f = 0; f < now.faces.size(); ++f) compare(now.faces[f].boundary, then.faces[f].boundary);
   for (std::size_t i = 0; i < now.patches.size(); ++i)
     compare(now.patches[i].boundary, then.patches[i].boundary);
