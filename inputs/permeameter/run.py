@@ -17,7 +17,8 @@ from plotting import plt
 
 KEYS = {
     "PACKING": (str, "", "CSV with id,x,y,z,radius or LIGGGHTS dump; none: tests/data/packing_500"),
-    "BOX": (str, "", "XLO,XHI,YLO,YHI,ZLO,ZHI in m; none: the extent of the grains"),
+    "BOX": (str, "", "XLO,XHI,YLO,YHI,ZLO,ZHI in m; none: the extent of the grains, or of a periodic dump's cell"),
+    "PERIODIC": (str, "dump", "dump: the axes that are periodic in the dump; none: walls on all sides"),
     "LAW": (str, "hydraulic_radius", "conductance law"),
     "WALL": (str, "symmetry", "symmetry or no_slip side walls"),
     "OUT": scene.OUT,
@@ -39,6 +40,20 @@ def read_grains(path):
     return np.array([[float(row[c]) for c in columns] for row in rows])
 
 
+def cell_of(path):
+    """{axis: (low, high)} of the axes along which a dump's last simulation box is periodic."""
+    lines = Path(path).read_text().splitlines()
+    starts = [k for k, line in enumerate(lines) if line.startswith("ITEM: BOX BOUNDS")]
+    if not starts:
+        return {}
+    kinds = lines[starts[-1]].split()[3:]
+    if len(kinds) == 6:
+        raise scene.BadSetting(f"{path}: its simulation box is tilted; give an orthogonal one")
+    bounds = [line.split() for line in lines[starts[-1] + 1:starts[-1] + 4]]
+    return {axis: (float(low), float(high))
+            for axis, kind, (low, high) in zip("xyz", kinds, bounds) if kind == "pp"}
+
+
 def extent(grains):
     low = (grains[:, :3] - grains[:, 3:]).min(axis=0)
     high = (grains[:, :3] + grains[:, 3:]).max(axis=0)
@@ -54,15 +69,26 @@ def references(grains, porosity):
             "van der Hoef et al. 2005": d * d * porosity / (18.0 * c * drag)}
 
 
-def solve(settings, packing, box):
+def driven_along(axis, box, cell):
+    """1 Pa between the two faces of an axis, or from each period to the next."""
+    if axis not in cell:
+        return ["--face", f"{axis}lo:pressure=1", "--face", f"{axis}hi:pressure=0"]
+    number = "xyz".index(axis)
+    gradient = ["0", "0", "0"]
+    gradient[number] = repr(-1.0 / (box[2 * number + 1] - box[2 * number]))
+    return ["--gradient", *gradient]
+
+
+def solve(settings, packing, box, cell):
     reports = {}
+    periodic = ["--periodic", ",".join(cell)] if cell else []
     for axis in "xyz":
         out = f"{settings['OUT']}_{axis}"
         print(f"flow along {axis}", flush=True)
         reports[axis] = scene.pfv_solve(
             SCENE, packing, box, 1.0e-3, f"{out}.json", "--wall", settings["WALL"],
-            "--conductance", settings["LAW"], "--face", f"{axis}lo:pressure=1",
-            "--face", f"{axis}hi:pressure=0", "--vtk", f"{out}.vtu", "--forces", f"{out}.csv")
+            "--conductance", settings["LAW"], *periodic, *driven_along(axis, box, cell),
+            "--vtk", f"{out}.vtu", "--forces", f"{out}.csv")
     return reports
 
 
@@ -76,14 +102,14 @@ def confidence(report):
             + (f", but: {why}" if why else ""))
 
 
-def draw(settings, box, reports):
+def draw(settings, box, cell, reports):
     figure, axes = plt.subplots(1, 3, figsize=(12, 3.8))
     for place, axis in zip(axes, "xyz"):
         flow = fields.Fields(SCENE / f"{settings['OUT']}_{axis}.vtu")
         along = "xyz".index(axis)
         across = (along + 1) % 3
         dots = place.scatter(flow.points[:, along], flow.points[:, across], c=flow["pressure"],
-                             s=4, cmap="coolwarm", vmin=0, vmax=1)
+                             s=4, cmap="coolwarm", **({} if axis in cell else {"vmin": 0, "vmax": 1}))
         place.set(xlabel=f"{axis}, m", ylabel=f"{'xyz'[across]}, m",
                   xlim=box[2 * along:2 * along + 2], ylim=box[2 * across:2 * across + 2],
                   title=f"K = {reports[axis]['permeability']:.3e} m²")
@@ -98,12 +124,20 @@ def work(words):
     try:
         grains = read_grains(packing)
         box = settings["BOX"] or ("" if settings["PACKING"] else PACKING_BOX)
+        cell = cell_of(packing) if settings["PERIODIC"] == "dump" else {}
         box = [float(word) for word in box.split(",")] if box else extent(grains)
     except (OSError, ValueError) as problem:
         raise scene.BadSetting(f"{packing} or BOX: {problem}") from None
+    if settings["PERIODIC"] not in ("dump", "none"):
+        raise scene.BadSetting("PERIODIC is dump or none")
     if len(box) != 6:
         raise scene.BadSetting("BOX needs six numbers, with commas between them")
-    reports = solve(settings, str(Path(packing).resolve()), box)
+    for axis, bounds in cell.items():
+        box[2 * "xyz".index(axis):2 * "xyz".index(axis) + 2] = bounds
+    if cell:
+        print("the dump's simulation box is periodic along " + ", ".join(
+            f"{axis} ({low:g} to {high:g} m)" for axis, (low, high) in cell.items()))
+    reports = solve(settings, str(Path(packing).resolve()), box, cell)
     values = [reports[axis]["permeability"] for axis in "xyz"]
     report = reports["z"]
     print(f"\nPermeameter, {report['spheres']} grains, porosity {report['porosity']:.4f}, "
@@ -115,7 +149,7 @@ def work(words):
     for name, value in references(grains, report["porosity"]).items():
         print(f"  {name:<24s} {value:.4e} m2   mean K / this {np.mean(values) / value:.3f}")
     print(f"  {confidence(report)}")
-    draw(settings, box, reports)
+    draw(settings, box, cell, reports)
     mass = max(abs(r["mass_error"]) for r in reports.values())
     forces = max(r["force_balance_error"] for r in reports.values())
     checks = [("mass error, largest", mass, "<= 1e-10", mass <= 1e-10),

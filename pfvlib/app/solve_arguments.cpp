@@ -5,10 +5,12 @@
 #include "io/atomic_file.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
+#include "pfv/packing_file.hpp"
 #include "text/number_text.hpp"
 #include "text/text_lines.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <ostream>
@@ -92,8 +94,14 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
                      "the pore at a place, as --region (default: none)"))
       ->option_text("X,Y,Z:ITEM")->group(group);
   command.add_option("--periodic", arguments.periodic,
-                     "axes along which the packing repeats (default: none)")
-      ->delimiter(',')->allow_extra_args(false)->option_text("x,y,z")->group(group);
+                     "axes along which the packing repeats, or `dump`: those of the\n"
+                     "dump's simulation box, with their bounds (--box is needed where\n"
+                     "an axis is not periodic) (default: none)")
+      ->delimiter(',')->allow_extra_args(false)->option_text("x,y,z|dump")->group(group);
+  command.add_option("--tilt", arguments.tilt,
+                     "how far a tilted periodic cell leans, m: xy, the way of its upper y\n"
+                     "side along x, and so on (default 0 0 0)")
+      ->type_size(3)->expected(1)->option_text("XY XZ YZ")->group(group);
   command.add_option("--gradient", arguments.gradient,
                      "macroscopic pressure gradient along periodic axes, Pa/m (default 0 0 0)")
       ->type_size(3)->expected(1)->option_text("GX GY GZ")->group(group);
@@ -114,12 +122,52 @@ double length_unit_of(const std::string& text) {
   return positive("--length-unit", text);
 }
 
+bool periodic_as_dump(const SolveArguments& arguments) {
+  return arguments.periodic == std::vector<std::string>{"dump"};
+}
+
+/// Along the periodic axes of the dump its own bounds, which --box must not contradict.
+void apply_dump(const SolveArguments& arguments, Box& box) {
+  if (detail::is_stream(arguments.packing))
+    throw InputError("--periodic dump: the packing is read twice: give a file, or name the axes");
+  const std::optional<PackingBounds> dumped =
+      read_packing_file(arguments.packing, {arguments.snapshot, length_unit_of(arguments.length_unit)}).bounds;
+  if (!dumped || !dumped->any_periodic())
+    throw InputError("--periodic dump: " + detail::quoted(arguments.packing) +
+                     " is no dump of a simulation box with periodic sides (BOX BOUNDS pp ...): name the axes");
+  box.tilt = dumped->tilt;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    if (!dumped->periodic[axis]) {
+      if (arguments.box.empty())
+        throw InputError("--periodic dump: the simulation box is not periodic along " + name +
+                         ": give the flow's bounds there with --box");
+      continue;
+    }
+    const double length = dumped->upper[axis] - dumped->lower[axis];
+    const auto differ = [&](double a, double b) { return !(std::abs(a - b) <= 1e-9 * length); };
+    if (!arguments.box.empty() &&
+        (differ(box.lower[axis], dumped->lower[axis]) || differ(box.upper[axis], dumped->upper[axis])))
+      throw InputError("--box: along " + name + ", which is periodic in the dump, its bounds are " +
+                       detail::number_text(dumped->lower[axis]) + " " + detail::number_text(dumped->upper[axis]) +
+                       ": give these, or name the periodic axes yourself");
+    box.lower[axis] = dumped->lower[axis];
+    box.upper[axis] = dumped->upper[axis];
+    box.periodic[axis] = true;
+  }
+}
+
 /// "x", "x,y", "z,x,y": the axes along which the packing repeats.
 void apply_periodic(const SolveArguments& arguments, Box& box) {
-  for (const std::string& axis : arguments.periodic) {
+  const bool of_dump = periodic_as_dump(arguments);
+  if (of_dump) apply_dump(arguments, box);
+  if (of_dump && !arguments.tilt.empty()) throw InputError("--tilt: --periodic dump has that of the dump: leave it away");
+  for (std::size_t k = 0; k < arguments.tilt.size(); ++k)
+    box.tilt[static_cast<Eigen::Index>(k)] = number("--tilt", arguments.tilt[k]);
+  for (const std::string& axis : of_dump ? std::vector<std::string>{} : arguments.periodic) {
     if (axis != "x" && axis != "y" && axis != "z")
       throw InputError("--periodic: unknown axis " + detail::quoted(axis) +
-                       ": give some of x, y, z, with commas between them");
+                       ": give some of x, y, z, with commas between them, or dump alone");
     bool& periodic = box.periodic[axis[0] - 'x'];
     if (periodic) throw InputError("--periodic: axis " + axis + " occurs twice");
     periodic = true;
@@ -131,7 +179,7 @@ void apply_periodic(const SolveArguments& arguments, Box& box) {
 /// The six planes of --box.
 Box box_of(const SolveArguments& arguments) {
   Box box;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3 && !arguments.box.empty(); ++axis) {
     box.lower[axis] = number("--box", arguments.box[2 * axis]);
     box.upper[axis] = number("--box", arguments.box[2 * axis + 1]);
   }
@@ -141,11 +189,12 @@ Box box_of(const SolveArguments& arguments) {
 }
 
 Container container_of(const SolveArguments& arguments) {
-  if (arguments.container.has_value() == !arguments.box.empty())
+  const bool has_box = !arguments.box.empty() || periodic_as_dump(arguments);
+  if (arguments.container.has_value() == has_box)
     throw InputError(arguments.container ? "--box and --container exclude each other: give one of them"
                                          : "--box or --container is required: see pfv solve --help");
-  if (arguments.container && (!arguments.periodic.empty() || !arguments.gradient.empty()))
-    throw InputError("--periodic and --gradient need a --box");
+  if (arguments.container && (!arguments.periodic.empty() || !arguments.gradient.empty() || !arguments.tilt.empty()))
+    throw InputError("--periodic, --tilt and --gradient need a --box");
   Container container = arguments.container ? read_container(*arguments.container) : Container(box_of(arguments));
   apply_faces(arguments.faces, wall_named("--wall", arguments.wall), container);
   apply_patches(arguments.patches, container);
@@ -295,9 +344,24 @@ SolveRequest request_of(const SolveArguments& arguments) {
   return request;
 }
 
+namespace {
+
+/// A packing that goes on beyond its borders, in a box of walls, has other pores there.
+void warn_of_periodic_dump(const SolveRequest& request, const std::optional<PackingBounds>& bounds,
+                           std::ostream& remarks) {
+  if (request.container.any_periodic() || !bounds || !bounds->any_periodic()) return;
+  remarks << "pfv: warning: the simulation box of this dump is periodic along";
+  for (int axis = 0; axis < 3; ++axis)
+    if (bounds->periodic[axis]) remarks << ' ' << "xyz"[axis];
+  remarks << ", and walls stand there now: --periodic dump takes its cell\n";
+}
+
+}  // namespace
+
 PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks) {
   PackingFile file = read_packing_file(request.packing, request.choice);
   for (const std::string& remark : file.remarks) remarks << "pfv: " << request.packing << ": " << remark << '\n';
+  warn_of_periodic_dump(request, file.bounds, remarks);
   if (request.at_rest) file.packing.velocities.resize(3, 0);
   if (request.at_rest) file.packing.angular_velocities.resize(3, 0);
   return std::move(file.packing);

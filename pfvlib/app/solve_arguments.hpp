@@ -20,7 +20,7 @@ struct SolveArguments {
   std::string packing, snapshot = "last", length_unit = "m";
   bool at_rest = false;
   std::optional<std::string> container;
-  std::vector<std::string> box, faces, patches, regions, points, periodic, gradient;
+  std::vector<std::string> box, faces, patches, regions, points, periodic, tilt, gradient;
   std::string wall = name_of(Wall::no_slip);
   std::map<std::string, std::vector<std::string>> settings;  ///< by the names of the table
   std::optional<std::string> time_step, repeat;

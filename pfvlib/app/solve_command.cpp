@@ -41,7 +41,9 @@ StepTimes repeat_steps(FlowModel& flow, const Packing& packing, const SolveReque
 
 /// Nothing drives the flow and nothing fixes the level of the pressure.
 bool is_unloaded(const SolveRequest& request, const Packing& packing) {
-  if (request.settings.fluid.bulk_modulus || !at_rest(packing, request.container)) return false;
+  if (request.settings.fluid.bulk_modulus || !at_rest(packing, request.container) ||
+      !request.container.pressure_gradient.isZero(0.0))
+    return false;
   const auto idle = [](const Boundary& boundary) {
     return !boundary.imposes_pressure() && !boundary.drives_flux();
   };
@@ -92,7 +94,9 @@ void warn(const SolveRequest& request, const FlowModel& flow, const Packing& pac
   warn_of_hidden(flow, packing, warnings);
   warn_of_motion(request, packing, report, warnings);
   warn_of_size(packing, warnings);
-  if (is_unloaded(request, packing))
+  if (report.permeability_tensor && counts.pinned_pores == report.pores) {
+    // a cell that is periodic all around: no pressure has a level there
+  } else if (is_unloaded(request, packing))
     warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
   else if (counts.pinned_pores > 0)
     warnings << "pfv: warning: " << counts.pinned_pores
@@ -115,6 +119,8 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Pac
 /// The tensor stands in the report; without a gradient its error is worth a line all the same.
 void write_permeability(const Report& report, std::ostream& out) {
   if (report.permeability) out << "permeability " << *report.permeability << " m2, ";
+  else if (report.permeability_tensor)
+    out << "permeability along x, y, z " << report.permeability_tensor->diagonal().transpose() << " m2, ";
   if (report.permeability_error)
     out << "estimated error of the permeability " << std::setprecision(2)
         << 100.0 * *report.permeability_error << " %, degenerate throats' share of the dissipation "

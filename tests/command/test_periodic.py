@@ -79,6 +79,70 @@ class Periodic(CommandTest):
         self.assertLess(along["force_balance_error"], 1e-14)
         self.assertIsNone(through["permeability_tensor"])
 
+    def dump(self, kinds="pp pp pp", bounds=("0 1", "0 1", "0 1")):
+        """The bcc cell as a dump, after a snapshot of another box."""
+        text = ""
+        for step, box in enumerate((("0 9", "0 9", "0 9"), bounds)):
+            centres, radius = LATTICES["bcc"][:2]
+            text += f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(centres)}\nITEM: BOX BOUNDS {kinds}\n"
+            text += "".join(line + "\n" for line in box) + "ITEM: ATOMS id x y z radius\n"
+            text += "".join(f"{i} {x!r} {y!r} {z!r} {radius!r}\n" for i, (x, y, z) in enumerate(centres, 1))
+        return self.write("cell.dump", text)
+
+    def test_the_cell_of_a_dump(self):
+        centres, radius = LATTICES["bcc"][:2]
+        named = self.report(*ALL, packing=self.packing(centres, radius))
+        done = self.run_pfv("solve", "--packing", self.dump(), "--periodic", "dump", "--viscosity", "1")
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stderr)
+        self.assertEqual(done.stdout.splitlines()[1].split()[:4], ["permeability", "along", "x,", "y,"])
+        along_x = float(done.stdout.splitlines()[1].split()[5])
+        self.assertAlmostEqual(along_x / named["permeability"], 1.0, delta=1e-5)  # printed digits
+
+    def test_a_dump_that_is_periodic_on_some_sides(self):
+        packing = self.dump("pp ff pp")
+        driven = ["--face", "ylo:pressure=1", "--face", "yhi:pressure=0", "--viscosity", "1"]
+        mixed = self.report("--periodic", "dump", *driven, packing=packing)
+        named = self.report("--periodic", "x,z", *driven, packing=packing)
+        self.assertEqual(mixed["permeability"], named["permeability"])
+
+    def test_a_tilted_dump(self):
+        """By a whole edge: the bounds in the file are those around the tilted box, the lattice is the straight one."""
+        straight = self.report("--periodic", "dump", box=[], packing=self.dump())
+        tilted = self.dump("xy xz yz pp pp pp", ("-1 1 -1", "0 2 0", "0 1 1"))
+        for arguments, packing in ((("--periodic", "dump"), tilted),):
+            report = self.report(*arguments, box=[], packing=packing)
+            for i in range(3):
+                self.assertAlmostEqual(report["permeability_tensor"][i][i] / straight["permeability_tensor"][i][i], 1.0,
+                                       delta=1e-9)
+        named = self.report("--periodic", "x,y,z", "--tilt", "-1", "0", "1", packing=tilted)
+        self.assertEqual(named["permeability_tensor"], report["permeability_tensor"])
+
+    def test_walls_around_a_periodic_dump_are_said(self):
+        done = self.run_pfv("solve", "--packing", self.dump(), *UNIT_BOX, "--face", "zlo:pressure=1",
+                            "--face", "zhi:pressure=0")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("periodic along x y z", done.stderr)
+        self.assertIn("--periodic dump", done.stderr)
+
+    def test_a_gradient_is_a_load(self):
+        done = self.run_pfv("solve", "--packing", self.packing(*LATTICES["bcc"][:2]), *UNIT_BOX, *ALL)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_cells_that_are_not_to_be_had(self):
+        for dump, arguments, words in (
+                (("ff ff ff",), (), "no dump of a simulation box with periodic sides"),
+                (("pp pp ff",), (), "along z"),
+                (("xy xz yz pp pp ff", ("0 1.3 0.2", "0 1 0.1", "0 1 0")), UNIT_BOX, "tilt xz"),
+                (("pp pp pp", ("0 1", "0 x", "0 1")), (), "'0 x'"),
+                (("pp pp pp", ("0 1", "0", "0 1")), (), "two numbers"),
+                (("",), (), "no dump of a simulation box with periodic sides"),
+                (("pp pp pp",), ("--box", "0", "1", "0", "1", "0", "2"), "along z")):
+            with self.subTest(words):
+                self.assert_refused(self.run_pfv("solve", "--packing", self.dump(*dump), "--periodic", "dump",
+                                                 *arguments), words)
+        csv = self.packing([(.5, .5, .5)], .5)
+        self.assert_refused(self.run_pfv("solve", "--packing", csv, "--periodic", "dump"), "no dump")
+
     def test_refusals(self):
         grains = self.packing([(.5, .5, .5)], .5)
         for arguments, word in ((["--periodic", "x,q"], "'q'"), (["--periodic", "x,x"], "twice"),

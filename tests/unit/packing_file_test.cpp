@@ -221,6 +221,18 @@ struct Refused {
   std::string content, cause;
 };
 
+// The file has the bounds of the box around the tilted one.
+TEST_F(PackingFiles, ATiltedRoomHasItsOwnBoundsAndItsTilt) {
+  const pfv::PackingFile read = pfv::read_packing_file(
+      file(dump("id type x y z radius ", plain, "xy xz yz pp pp pp", "-0.2 1.1 0.1\n0 1.3 -0.2\n0 1 0.3\n")));
+  expect_two(read);
+  ASSERT_TRUE(read.bounds);
+  EXPECT_LT((read.bounds->lower - Eigen::Vector3d(0.0, 0.0, 0.0)).norm(), 1e-15);
+  EXPECT_LT((read.bounds->upper - Eigen::Vector3d(1.0, 1.0, 1.0)).norm(), 1e-15);
+  EXPECT_EQ(read.bounds->tilt, Eigen::Vector3d(0.1, -0.2, 0.3));
+  EXPECT_EQ(read.bounds->periodic, (std::array<bool, 3>{true, true, true}));
+}
+
 TEST_F(PackingFiles, WhatIsNotReadIsRefusedWithItsCause) {
   const std::string named_mm = "id,x [mm],y [mm],z [mm],radius [mm]\n7,1,2,3,4\n";
   const std::vector<Refused> all{
@@ -234,7 +246,7 @@ TEST_F(PackingFiles, WhatIsNotReadIsRefusedWithItsCause) {
       {dump("id type x y z radius ", plain).substr(0, dump("id type x y z radius ", plain).size() - 2),
        ":11: the dump ends inside this line"},
       {dump("id type xs ys zs radius ", plain, "xy xz yz ff ff ff", "0 1 0.1\n0 1 0\n0 1 0\n"), "coordinates are scaled"},
-      {dump("id type x y z radius ", plain, "xy xz yz pp pp pp", "0 1 0.1\n0 1 0\n0 1 0\n"), "tilted"},
+      {dump("id type xs ys zs radius ", plain, "xy xz yz pp pp pp", "0 1 0.1\n0 1 0\n0 1 0\n"), "room is tilted"},
       {"ITEM: UNITS\nlj\n" + dump("id type x y z radius ", plain), ":2: its units are 'lj', not si"},
       {dump("id type x y z ", "7 1 0 0 0\n9 1 1 1 1\n"), ":9: column radius is missing"},
       {"BZh91AY&SY", "packed with bzip2"},

@@ -128,6 +128,9 @@ struct Box {
   /// their velocities stretches the cell: an image n lengths L away moves by n dL/dt beside its sphere, and a
   /// sphere has the velocity that belongs to where the packing has it.
   std::array<bool, 3> periodic{false, false, false};
+  /// How far a tilted cell leans, m: xy, the way of its upper y side along x, then xz and yz. The packing repeats
+  /// by (Lx, 0, 0), (xy, Ly, 0) and (xz, yz, Lz); both axes of a component must be periodic.
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();
   /// Macroscopic pressure gradient along the periodic axes, Pa/m: the pressure is a periodic field plus
   /// gradient . x, and fluid flows against it.
   Eigen::Vector3d pressure_gradient = Eigen::Vector3d::Zero();
@@ -145,6 +148,7 @@ struct Box {
   }
   double volume() const { return (upper - lower).prod(); }
   bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
+  bool is_tilted() const { return !tilt.isZero(0.0); }
 };
 
 /// Throws InputError, which begins with `where`, for a value that is not finite.

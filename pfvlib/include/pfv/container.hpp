@@ -68,6 +68,7 @@ struct Container {
   std::vector<ContainerPatch> patches;
   std::vector<Region> regions;
   std::array<bool, 3> periodic{false, false, false};  ///< boxes alone
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();     ///< of a periodic cell: xy, xz, yz, m
   Eigen::Vector3d pressure_gradient = Eigen::Vector3d::Zero();
   /// The smallest box around it, m; a flow finds it anew for the faces as they are.
   Eigen::Vector3d lower = Eigen::Vector3d::Zero(), upper = Eigen::Vector3d::Ones();

@@ -15,6 +15,7 @@ namespace pfv {
 struct PackingBounds {
   Eigen::Vector3d lower, upper;
   std::array<bool, 3> periodic{false, false, false};
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  ///< xy, xz, yz of a room that leans (Box::tilt)
 
   bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
 };

@@ -87,14 +87,23 @@ std::int64_t read_number_of_atoms(TextLines& lines) {
   return *number;
 }
 
-/// `ITEM: BOX BOUNDS [xy xz yz] pp pp ff` and three lines of lower and upper bounds. A tilted room has none.
+/// Of a tilted room the file has the bounds of the box around it.
+void take_off_tilt(PackingBounds& bounds) {
+  const double xy = bounds.tilt[0], xz = bounds.tilt[1], yz = bounds.tilt[2];
+  bounds.lower[0] -= std::min({0.0, xy, xz, xy + xz});
+  bounds.upper[0] -= std::max({0.0, xy, xz, xy + xz});
+  bounds.lower[1] -= std::min(0.0, yz);
+  bounds.upper[1] -= std::max(0.0, yz);
+}
+
+/// `ITEM: BOX BOUNDS [xy xz yz] pp pp ff` and three lines of lower and upper bounds. A tilted room without periodic
+/// sides has none.
 std::optional<PackingBounds> read_bounds(TextLines& lines) {
   Words words, fields;
   split_words(lines.line(), words);
   PackingBounds bounds;
   if (words.size() >= 6)
     for (int axis = 0; axis < 3; ++axis) bounds.periodic[axis] = words[words.size() - 3 + axis] == "pp";
-  bool tilted = false;
   for (int axis = 0; axis < 3; ++axis) {
     if (!lines.next()) fail_cut_off(lines, "in its bounds");
     split_words(lines.line(), fields);
@@ -103,12 +112,12 @@ std::optional<PackingBounds> read_bounds(TextLines& lines) {
     if (!lower || !upper) lines.fail("bounds are " + detail::quoted(lines.line()) + ": give two numbers");
     bounds.lower[axis] = *lower;
     bounds.upper[axis] = *upper;
-    tilted |= fields.size() > 2 && finite_number(fields[2]).value_or(0.0) != 0.0;
+    if (fields.size() > 2) bounds.tilt[axis] = finite_number(fields[2]).value_or(0.0);
   }
-  if (!tilted) return bounds;
-  if (bounds.any_periodic())
-    lines.fail("the periodic room is tilted, which is not supported: give spheres in a room with right angles");
-  return {};
+  if (bounds.tilt.isZero(0.0)) return bounds;
+  if (!bounds.any_periodic()) return {};
+  take_off_tilt(bounds);
+  return bounds;
 }
 
 SphereTable read_atoms(TextLines& lines, const Columns& columns, std::int64_t atoms, std::size_t characters) {
@@ -130,6 +139,10 @@ void make_plain(PackingArrays& packing, Places places, const std::optional<Packi
                 const std::string& path) {
   if (places == Places::plain) return;
   const bool scaled = places != Places::unwrapped;
+  if (bounds && !bounds->tilt.isZero(0.0)) {  // places on its lattice may stay as they are
+    if (scaled) throw InputError(path + ": its coordinates are scaled and its room is tilted: write x, y, z");
+    return;
+  }
   if (scaled && !bounds)
     throw InputError(path + ": its coordinates are scaled and its room is not known or tilted: write x, y, z");
   for (int axis = 0; bounds && axis < 3; ++axis) {

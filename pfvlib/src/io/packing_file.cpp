@@ -110,6 +110,7 @@ void apply_unit(PackingFile& file, double unit) {
   if (!file.bounds) return;
   file.bounds->lower *= unit;
   file.bounds->upper *= unit;
+  file.bounds->tilt *= unit;
 }
 
 }  // namespace

@@ -156,10 +156,17 @@ ActiveGrains select_grains(const Packing& packing, const Container& container, O
   spheres.walls = walls_of(container, container.lower);
   spheres.volume = volume;
   spheres.periodic = container.periodic;
+  spheres.tilt = container.tilt;
+  const bool tilted = !container.tilt.isZero(0.0);
   for (Eigen::Index i = 0; i < n; ++i) {
     const int k = grains.columns[i];
     spheres.ids[i] = packing.ids[k];
     spheres.centres.col(i) = packing.positions.col(k) - container.lower;
+    if (tilted) {
+      const Lattice lattice = spheres.lattice();
+      spheres.centres.col(i) -=
+          lattice.displacement(lattice.periods(spheres.centres.col(i), [](double x) { return std::floor(x); }));
+    }
     for (int axis = 0; axis < 3; ++axis)  // back into the periodic cell
       if (container.periodic[axis])
         spheres.centres(axis, i) -=

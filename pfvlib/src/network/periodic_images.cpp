@@ -21,16 +21,13 @@ constexpr double same_place = 1e-5;
 /// What leaves the cell and what comes in may differ by this part of the largest throat.
 constexpr double same_area = 1e-9;
 
+/// Periods that a place is away from the cell; what stands on the cell's upper border but for rounding is below.
 std::array<int, 3> shift_of(const Eigen::Vector3d& place, const Spheres& spheres) {
-  std::array<int, 3> shift{0, 0, 0};
-  for (int axis = 0; axis < 3; ++axis)
-    if (spheres.periodic[axis])  // what stands on the cell's upper border but for rounding is below
-      shift[axis] = static_cast<int>(std::floor(place[axis] / spheres.edges[axis] + 1e-6));
-  return shift;
+  return spheres.lattice().periods(place, [](double x) { return std::floor(x + 1e-6); });
 }
 
 Eigen::Vector3d displacement(const std::array<int, 3>& shift, const Spheres& spheres) {
-  return Eigen::Vector3d(shift[0], shift[1], shift[2]).cwiseProduct(spheres.edges);
+  return spheres.lattice().displacement(shift);
 }
 
 /// Finds the home pore at a place.
@@ -207,9 +204,13 @@ Images replicate(const Spheres& spheres, double margin) {
   Images images;
   images.margin = margin;
   std::array<int, 3> reach{0, 0, 0};
-  for (int axis = 0; axis < 3; ++axis)
-    if (spheres.periodic[axis])
-      reach[axis] = static_cast<int>(std::ceil(margin / spheres.edges[axis]));
+  Eigen::Vector3d leaning = Eigen::Vector3d::Zero();  // of all the images so far, along the axes that come next
+  for (int axis = 2; axis >= 0; --axis) {
+    if (!spheres.periodic[axis]) continue;
+    reach[axis] = static_cast<int>(std::ceil((margin + leaning[axis]) / spheres.edges[axis]));
+    if (axis == 2) leaning += reach[2] * Eigen::Vector3d(std::abs(spheres.tilt[1]), std::abs(spheres.tilt[2]), 0.0);
+    if (axis == 1) leaning[0] += reach[1] * std::abs(spheres.tilt[0]);
+  }
   std::vector<Eigen::Vector3d> centres;
   for (int x = -reach[0]; x <= reach[0]; ++x)
     for (int y = -reach[1]; y <= reach[1]; ++y)
@@ -229,6 +230,7 @@ Images replicate(const Spheres& spheres, double margin) {
   images.spheres.walls = spheres.walls;
   images.spheres.volume = spheres.volume;
   images.spheres.periodic = spheres.periodic;
+  images.spheres.tilt = spheres.tilt;
   images.spheres.ids.resize(n);
   images.spheres.centres.resize(3, n);
   images.spheres.radii.resize(n);

@@ -4,6 +4,7 @@
 #include "pfv/container.hpp"
 #include "pfv/network.hpp"
 #include "pfv/packing.hpp"
+#include "problem/lattice.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -39,7 +40,9 @@ struct Spheres {
   std::vector<WallSurface> walls;
   double volume = 0.0;  ///< of the container, m³
   std::array<bool, 3> periodic{false, false, false};
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  ///< of a periodic cell, m
 
+  Lattice lattice() const { return {edges, tilt, periodic}; }
   int size() const { return static_cast<int>(radii.size()); }
   int wall_count() const { return static_cast<int>(walls.size()); }
   const WallSurface& wall(Vertex vertex) const { return walls[wall_number(vertex)]; }

@@ -49,6 +49,21 @@ void check_extent(const Box& box, const Patch& patch, int axis, int first,
                      interval(box.lower[axis], box.upper[axis]) + ": move it onto the face");
 }
 
+void check_tilt(const Box& box) {
+  constexpr std::array<std::array<int, 2>, 3> axes{{{0, 1}, {0, 2}, {1, 2}}};
+  for (int k = 0; k < 3; ++k) {
+    const auto [along, of] = axes[k];
+    const std::string where = std::string("tilt ") + axis_names[along] + axis_names[of];
+    require_finite(box.tilt[k], where);
+    if (box.tilt[k] != 0.0 && !(box.periodic[along] && box.periodic[of]))
+      throw InputError(where + " needs periodic axes " + axis_names[along] + " and " + axis_names[of] +
+                       ": make them periodic, or leave the tilt at 0");
+  }
+  for (const Face face : all_faces)
+    if (box.is_tilted() && box.periodic[axis_of(face)] && box[face].velocity != 0.0)
+      throw InputError(std::string("face ") + name_of(face) + ": a tilted cell cannot be stretched; leave its velocity at 0");
+}
+
 void check_periodic(const Box& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::string where = std::string("pressure gradient along ") + axis_names[axis];
@@ -125,6 +140,7 @@ void check(const Box& box) {
   for (std::size_t number = 0; number < box.patches.size(); ++number) check_patch(box, number);
   for (std::size_t number = 0; number < box.regions.size(); ++number) check_region(box, number);
   check_periodic(box);
+  check_tilt(box);
 }
 
 }  // namespace pfv

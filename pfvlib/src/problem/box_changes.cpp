@@ -10,7 +10,7 @@ namespace pfv {
 
 bool same_kinds(const Container& a, const Container& b) {
   if (a.patches.size() != b.patches.size() || a.regions.size() != b.regions.size() ||
-      a.periodic != b.periodic || a.is_box != b.is_box || a.faces.size() != b.faces.size())
+      a.periodic != b.periodic || a.tilt != b.tilt || a.is_box != b.is_box || a.faces.size() != b.faces.size())
     return false;
   for (std::size_t i = 0; i < a.regions.size(); ++i)
     if (a.regions[i].lower != b.regions[i].lower || a.regions[i].upper != b.regions[i].upper ||

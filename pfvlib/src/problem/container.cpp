@@ -167,6 +167,7 @@ Eigen::Vector3d Surface::outward_at(const Eigen::Vector3d& place) const {
 Container::Container(const Box& box)
     : regions(box.regions),
       periodic(box.periodic),
+      tilt(box.tilt),
       pressure_gradient(box.pressure_gradient),
       lower(box.lower),
       upper(box.upper),
@@ -207,6 +208,7 @@ std::optional<Box> box_of(const Container& container) {
     box.patches.push_back({static_cast<Face>(patch.face), patch.rectangle, patch.boundary});
   box.regions = container.regions;
   box.periodic = container.periodic;
+  box.tilt = container.tilt;
   box.pressure_gradient = container.pressure_gradient;
   return box;
 }

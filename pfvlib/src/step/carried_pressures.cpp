@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -46,10 +47,10 @@ std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& no
 double raised_by_wrapping(const BuiltNetwork& old, int before, const BuiltNetwork& now, int after) {
   const Eigen::Vector3d& gradient = now.container.pressure_gradient;
   if (gradient.isZero(0.0)) return 0.0;
-  const Eigen::Vector3d& lengths = now.grains.spheres.edges;
+  const Lattice lattice = now.grains.spheres.lattice();
   const Eigen::Vector3d way = now.network.origin + now.network.cell_centres.col(after) - old.network.origin -
                               old.network.cell_centres.col(before);
-  return gradient.dot(lengths.cwiseProduct(way.cwiseQuotient(lengths).array().round().matrix()));
+  return gradient.dot(lattice.displacement(lattice.periods(way, [](double x) { return std::round(x); })));
 }
 
 }  // namespace

@@ -135,6 +135,10 @@ bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) 
     const double grown = std::abs(packing.radii[k] - radius);
     Eigen::Vector3d moved = packing.positions.col(k) - built_->network.origin -
                             grains.spheres.centres.col(i);
+    if (!problem.container.tilt.isZero(0.0)) {
+      const Lattice lattice = grains.spheres.lattice();
+      moved -= lattice.displacement(lattice.periods(moved, [](double x) { return std::round(x); }));
+    }
     for (int axis = 0; axis < 3; ++axis)  // the host may have wrapped it
       if (problem.container.periodic[axis])
         moved[axis] = std::remainder(moved[axis], grains.spheres.edges[axis]);

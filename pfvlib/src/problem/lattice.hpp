@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+
+namespace pfv {
+
+/// The periods of a packing that repeats. Its vectors are (Lx, 0, 0), (xy, Ly, 0) and (xz, yz, Lz), so that the brick
+/// of the edges Lx, Ly, Lz holds each grain once, also where the cell is tilted.
+struct Lattice {
+  using Shift = std::array<int, 3>;
+
+  Eigen::Vector3d edges = Eigen::Vector3d::Ones();  ///< m
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();   ///< xy, xz, yz, m
+  std::array<bool, 3> periodic{false, false, false};
+
+  Eigen::Vector3d displacement(const Shift& shift) const {
+    return Eigen::Vector3d(shift[0], shift[1], shift[2]).cwiseProduct(edges) +
+           Eigen::Vector3d(shift[1] * tilt[0] + shift[2] * tilt[1], shift[2] * tilt[2], 0.0);
+  }
+  /// Whole periods in a place or a way, by a rule for each axis: std::floor, std::round.
+  template <class Whole>
+  Shift periods(Eigen::Vector3d way, Whole&& whole) const {
+    Shift shift{0, 0, 0};
+    for (int axis = 2; axis >= 0; --axis) {  // the last vector leans over the others
+      if (!periodic[axis]) continue;
+      shift[axis] = static_cast<int>(whole(way[axis] / edges[axis]));
+      if (axis == 2) way[1] -= shift[2] * tilt[2];
+      way[0] -= axis == 2 ? shift[2] * tilt[1] : axis == 1 ? shift[1] * tilt[0] : 0.0;
+    }
+    return shift;
+  }
+};
+
+}  // namespace pfv
