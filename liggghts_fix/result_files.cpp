@@ -5,6 +5,7 @@
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
 
+#include <cmath>
 #include <cstdlib>
 #include <iomanip>
 #include <sstream>
@@ -188,13 +189,19 @@ std::vector<double> PfvResultFiles::flux_row(const pfv::FlowModel& flow) const {
 
 namespace {
 
-/// The place of a container that is nearest to one outside it, or nearly so where two walls meet.
+/// The place of a container that is nearest to one outside it, or nearly so where two walls meet; along periodic axes
+/// the image in the cell.
 Eigen::Vector3d moved_inside(const pfv::Container& container, Eigen::Vector3d place) {
   constexpr int rounds = 20;
   for (int round = 0; round < rounds && !container.is_box; ++round)
     for (const pfv::ContainerFace& face : container.faces)
       if (const double distance = face.surface.distance(place); distance < 0.0)
         place += distance * face.surface.outward_at(place);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!container.periodic[axis]) continue;
+    const double length = container.upper[axis] - container.lower[axis];
+    place[axis] -= length * std::floor((place[axis] - container.lower[axis]) / length);
+  }
   return place.cwiseMax(container.lower).cwiseMin(container.upper);
 }
 

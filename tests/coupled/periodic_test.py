@@ -85,6 +85,13 @@ class StillCell(PeriodicTest):
         self.assertLess(largest_difference(forces(ramped[1]), forces(held[0])), 1e-12)
         self.assertLess(largest_difference(forces(ramped[2]), forces(held[1])), 1e-12)
 
+    def test_a_sensor_in_the_next_cell_reads_the_image(self):
+        """An image one period on, of the pressure without the gradient's part of that period."""
+        self.write()
+        self.cell(f"viscosity 0.01 {EACH} gradient 12 0 0 sensors 1 p.csv 0.03 0.05 0.05 0.13 -0.05 0.05", "run 1\n")
+        row = (self.folder / "p.csv").read_text().splitlines()[-1].split(",")
+        self.assertEqual(row[1], row[2])
+
     def test_two_ranks(self):
         self.write(velocities=random_velocities(packing()))
         for ranks in (1, 2):
