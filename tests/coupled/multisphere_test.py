@@ -85,6 +85,21 @@ class Multisphere(CoupledTest):
         script = self.head().replace("fix move", GRAVITY + flow + "fix move") + THERMO + "run 0\nrun 1\n"
         self.assertLess(abs(read_thermo(self.liggghts(script))[-1]["speed"]), 1e-6)
 
+    def test_a_body_that_lies_across_a_periodic_side_keeps_its_lift(self):
+        """It falls through the cell's floor, 1 mm a step, and runs begin with one sphere on either side."""
+        upright = [(0, 0, -0.005, 0.01), (0, 0, 0.005, 0.01)]
+        head = self.head(upright, speed=-100.0).replace("boundary f f f", "boundary f f p")
+        head = head.replace("-0.05 0.15 units box\ncreate_box", "0.0 0.1 units box\ncreate_box")
+        sides = WIDE[:WIDE.index("face zlo")]
+        script = head + GRAVITY + (f"fix flow all pfv viscosity 1e-9 {sides} point 0.02 0.02 0.02 pressure 0 "
+                                   "couple_every 1\n") + THERMO.replace("thermo 1000", "thermo 1") + DUMP
+        rows = [row for row in read_thermo(self.liggghts(script + 60 * "run 1\n")) if "lift" in row]
+        apart = [abs(steps[0][2] - steps[1][2]) for steps in
+                 (list(rows.values()) for rows in read_dump(self.folder / "d.dump").values())]
+        self.assertGreater(max(apart), 0.05)
+        for row in rows:
+            self.assertAlmostEqual(row["lift"] / (1e4 * UNION_OF_PAIR), 1, delta=1e-12)
+
     def test_without_gravity_there_is_no_lift(self):
         script = self.head() + f"fix flow all pfv viscosity 1e-3 {WIDE}\n" + THERMO + "run 0\n"
         self.assertEqual(read_thermo(self.liggghts(script))[-1]["lift"], 0.0)
