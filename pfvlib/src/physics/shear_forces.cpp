@@ -73,6 +73,11 @@ std::vector<ShearPair> shear_pairs(const PoreNetwork& network, const Throats& th
   return pairs;
 }
 
+Eigen::Matrix3d resistance_of(const ShearPair& pair, double viscosity) {
+  return viscosity / pair.hydraulic_radius * pair.area *
+         (Eigen::Matrix3d::Identity() - pair.direction * pair.direction.transpose());
+}
+
 Eigen::Matrix3Xd shear_forces(const std::vector<ShearPair>& pairs, double viscosity,
                               const Eigen::Ref<const Eigen::Matrix3Xd>& velocities) {
   Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, velocities.cols());

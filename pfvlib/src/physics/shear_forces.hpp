@@ -24,6 +24,9 @@ struct ShearPair {
 std::vector<ShearPair> shear_pairs(const PoreNetwork& network, const Throats& throats,
                                    const Spheres& spheres);
 
+/// What a pair resists relative velocities with, kg/s: mu / R_h S across its direction, none along it.
+Eigen::Matrix3d resistance_of(const ShearPair& pair, double viscosity);
+
 /// Shear viscous forces (Catalano 2012 eqs. 6.29-6.30): mu / R_h S times the tangential relative velocity
 /// of the centres, 3 x N, N. Each pair is an action and its reaction along the sliding; walls take none
 /// and nothing turns.

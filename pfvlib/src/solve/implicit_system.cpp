@@ -116,6 +116,19 @@ SymmetricMatrix sum_of(const SymmetricMatrix& g, const std::vector<double>& pins
   return a;
 }
 
+/// Keeps the pins of sets that nothing yields to; says which others there are.
+std::vector<double> freed_pins(const PressureSystem& system, const Unknowns& unknowns, const YieldingRows& rows,
+                               std::vector<Isolated>& held) {
+  std::vector<double> pins(unknowns.count, 0.0);
+  for (const Isolated& isolated : system.isolated) {
+    if (yields_to(isolated, unknowns, rows))
+      pins[isolated.unknown] = isolated.pin;
+    else
+      held.push_back(isolated);
+  }
+  return pins;
+}
+
 }  // namespace
 
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
@@ -123,14 +136,94 @@ ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& u
                                  const Matrix6Xd& yielding) {
   const YieldingRows rows = yielding_rows(unknowns, forces, bases, yielding);
   ImplicitSystem result;
-  std::vector<double> pins(unknowns.count, 0.0);
-  for (const Isolated& isolated : system.isolated) {
-    if (yields_to(isolated, unknowns, rows))
-      pins[isolated.unknown] = isolated.pin;
-    else
-      result.isolated.push_back(isolated);
-  }
+  const std::vector<double> pins = freed_pins(system, unknowns, rows, result.isolated);
   result.matrix = sum_of(system.matrix, pins, rows);
+  return result;
+}
+
+Matrix6Xd without_velocities(Matrix6Xd yielding, int spheres) {
+  yielding.topLeftCorner(3, spheres).setZero();
+  return yielding;
+}
+
+namespace {
+
+/// M/dt + R by rows of blocks, one a grain.
+using Blocks = std::vector<std::map<int, Eigen::Matrix3d>>;
+
+Blocks velocity_blocks(const std::vector<int>& grains, const Matrix6Xd& yielding, int spheres,
+                       const std::vector<ShearPair>& pairs, double viscosity) {
+  std::vector<int> number(spheres, -1);
+  Blocks blocks(grains.size());
+  const auto add = [&](int row, int column, const Eigen::Matrix3d& value) {
+    blocks[row].try_emplace(column, Eigen::Matrix3d::Zero()).first->second += value;
+  };
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    number[grains[g]] = static_cast<int>(g);
+    add(static_cast<int>(g), static_cast<int>(g), yielding.col(grains[g]).head<3>().cwiseInverse().asDiagonal());
+  }
+  for (const ShearPair& pair : pairs) {
+    const Eigen::Matrix3d resistance = resistance_of(pair, viscosity);
+    const int a = number[pair.first], b = number[pair.second];
+    if (a >= 0) add(a, a, resistance);
+    if (b >= 0) add(b, b, resistance);
+    if (a < 0 || b < 0) continue;
+    add(a, b, -resistance);
+    add(b, a, -resistance);
+  }
+  return blocks;
+}
+
+void end_row(SymmetricMatrix& matrix) { matrix.row_begin.push_back(static_cast<int>(matrix.column.size())); }
+
+void add_entry(SymmetricMatrix& matrix, int column, double value) {
+  matrix.column.push_back(column);
+  matrix.value.push_back(value);
+}
+
+/// [ -a  -S^T ]   `rows`: S of the grains by row and by unknown.
+/// [ -S   h   ]
+SymmetricMatrix joined(const SymmetricMatrix& a, const YieldingRows& rows, const Blocks& h) {
+  SymmetricMatrix m;
+  for (int i = 0; i < a.size(); ++i) {
+    for (int k = a.row_begin[i]; k < a.row_begin[i + 1]; ++k) add_entry(m, a.column[k], -a.value[k]);
+    for (const auto& [grain, load] : rows.of_unknown[i])
+      for (int c = 0; c < 3; ++c) add_entry(m, a.size() + 3 * grain + c, -load[c]);
+    end_row(m);
+  }
+  for (std::size_t g = 0; g < h.size(); ++g)
+    for (int c = 0; c < 3; ++c) {
+      for (const auto& [unknown, load] : rows.of_row[g]) add_entry(m, unknown, -load[c]);
+      for (const auto& [other, block] : h[g])
+        for (int d = 0; d < 3; ++d) add_entry(m, a.size() + 3 * other + d, block(c, d));
+      end_row(m);
+    }
+  return m;
+}
+
+}  // namespace
+
+ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
+                               const Bases& bases, const Matrix6Xd& yielding,
+                               const std::vector<ShearPair>& pairs, double viscosity) {
+  const int spheres = forces.spheres;
+  ShearedSystem result;
+  result.pressures = unknowns.count;
+  Matrix6Xd velocities = Matrix6Xd::Zero(6, yielding.cols());
+  for (int k = 0; k < spheres; ++k) {
+    if (!(yielding(0, k) > 0.0)) continue;
+    result.grains.push_back(k);
+    velocities.col(k).head<3>().setOnes();
+  }
+  const std::vector<double> pins =
+      freed_pins(system, unknowns, yielding_rows(unknowns, forces, bases, yielding), result.isolated);
+  for (int k = 0; k < unknowns.count; ++k)
+    if (pins[k] != 0.0) result.last.push_back(k);
+  const YieldingRows others = yielding_rows(unknowns, forces, bases, without_velocities(yielding, spheres));
+  result.matrix = joined(sum_of(system.matrix, pins, others), yielding_rows(unknowns, forces, bases, velocities),
+                         velocity_blocks(result.grains, yielding, spheres, pairs, viscosity));
+  result.signs.assign(result.matrix.size(), 1.0);
+  std::fill_n(result.signs.begin(), result.pressures, -1.0);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "physics/force_matrix.hpp"
+#include "physics/shear_forces.hpp"
 #include "physics/volume_rates.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/pressure_system.hpp"
@@ -26,5 +27,30 @@ struct ImplicitSystem {
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
                                  const ForceMatrix& forces, const Bases& bases,
                                  const Matrix6Xd& yielding);
+
+/// The same step where shear forces -R v join the velocities of neighbours: B = (M/dt + R)^-1 is full, so that the
+/// velocities of the grains that yield stay unknowns beside the pressures:
+///
+///     [ -(G + S_o^T B_o S_o)   -S^T     ] [p]   [-b]
+///     [ -S                     M/dt + R ] [u] = [ f]
+///
+/// S_o, B_o: spins and faces, on which R does not act. Quasi-definite: L D L^T exists in any order.
+struct ShearedSystem {
+  SymmetricMatrix matrix;          ///< pressures first, then three velocities a grain
+  std::vector<double> signs;       ///< of the pivots: -1, then 1
+  int pressures = 0;
+  std::vector<int> grains;         ///< whose velocities are unknown, as columns of a Motion
+  std::vector<Isolated> isolated;  ///< as of ImplicitSystem
+  /// Pressures that nothing but grains determines: their pivots come after those of the grains.
+  std::vector<int> last;
+};
+
+/// `pairs` and `viscosity`: R.
+ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
+                               const Bases& bases, const Matrix6Xd& yielding,
+                               const std::vector<ShearPair>& pairs, double viscosity);
+
+/// Without the velocities of the grains: what is eliminated from a sheared system.
+Matrix6Xd without_velocities(Matrix6Xd yielding, int spheres);
 
 }  // namespace pfv
