@@ -28,18 +28,21 @@ ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& u
                                  const ForceMatrix& forces, const Bases& bases,
                                  const Matrix6Xd& yielding);
 
-/// The same step where shear forces -R v join the velocities of neighbours: B = (M/dt + R)^-1 is full, so that the
-/// velocities of the grains that yield stay unknowns beside the pressures:
+/// The same step where shear forces -R v join the velocities of neighbours: (M/dt + R)^-1 is full, so that what the
+/// grains yield by stays unknown beside the pressures:
 ///
-///     [ -(G + S_o^T B_o S_o)   -S^T     ] [p]   [-b]
+///     [ -(G + S_f^T B_f S_f)   -S^T     ] [p]   [-b]
 ///     [ -S                     M/dt + R ] [u] = [ f]
 ///
-/// S_o, B_o: spins and faces, on which R does not act. Quasi-definite: L D L^T exists in any order.
+/// S_f, B_f: of the faces. Quasi-definite: L D L^T exists in any order.
 struct ShearedSystem {
-  SymmetricMatrix matrix;          ///< pressures first, then three velocities a grain
-  std::vector<double> signs;       ///< of the pivots: -1, then 1
+  struct Velocity {
+    int grain, component;  ///< column and row of a Motion: 0-2 velocity, 3-5 spin
+  };
+  SymmetricMatrix matrix;
+  std::vector<double> signs;  ///< of the pivots: -1 of the pressures, which come first, 1 of the velocities
   int pressures = 0;
-  std::vector<int> grains;         ///< whose velocities are unknown, as columns of a Motion
+  std::vector<Velocity> velocities;
   std::vector<Isolated> isolated;  ///< as of ImplicitSystem
   /// Pressures that nothing but grains determines: their pivots come after those of the grains.
   std::vector<int> last;
@@ -50,7 +53,7 @@ ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unk
                                const Bases& bases, const Matrix6Xd& yielding,
                                const std::vector<ShearPair>& pairs, double viscosity);
 
-/// Without the velocities of the grains: what is eliminated from a sheared system.
-Matrix6Xd without_velocities(Matrix6Xd yielding, int spheres);
+/// Of the faces alone: what is eliminated from a sheared system.
+Matrix6Xd of_faces(Matrix6Xd yielding, int spheres);
 
 }  // namespace pfv

@@ -2,6 +2,7 @@
 #include "step/coupling_choice.hpp"
 
 #include "pfv/error.hpp"
+#include "problem/solver_abilities.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -39,7 +40,7 @@ void CouplingChoice::choose(double limit, double dt, const Step& step, const Opt
                                                : unknown;
   if (!(ratio > 1.0))
     chosen_ = Coupling::explicit_step;
-  else if (options.shear_viscous)  // which have no implicit step
+  else if (options.shear_viscous && !abilities_of(options.solver).quasi_definite)
     chosen_ = Coupling::staged;
   else
     chosen_ = cheaper(ratio, steps, grains);

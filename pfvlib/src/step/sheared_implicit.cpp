@@ -24,22 +24,21 @@ double ShearedImplicit::residual() const {
 
 namespace {
 
-/// Of the unknown pressures, then of the three velocities of each grain.
+/// Of the unknown pressures, then of the grains whose velocities are unknown.
 Eigen::Matrix3Xd places_of(const BuiltNetwork& built, const ShearedSystem& system) {
   Eigen::Matrix3Xd places(3, system.matrix.size());
   places.leftCols(system.pressures) = unknown_places(built);
-  for (std::size_t g = 0; g < system.grains.size(); ++g)
-    for (int c = 0; c < 3; ++c)
-      places.col(system.pressures + 3 * static_cast<Eigen::Index>(g) + c) =
-          built.grains.spheres.centres.col(system.grains[g]);
+  Eigen::Index place = system.pressures;
+  for (const auto& velocity : system.velocities)
+    places.col(place++) = built.grains.spheres.centres.col(velocity.grain);
   return places;
 }
 
 /// One entry for each velocity among the unknowns.
 Eigen::VectorXd velocities_in(const ShearedSystem& system, const Matrix6Xd& all) {
-  Eigen::VectorXd own(3 * static_cast<Eigen::Index>(system.grains.size()));
-  for (std::size_t g = 0; g < system.grains.size(); ++g)
-    own.segment<3>(3 * static_cast<Eigen::Index>(g)) = all.col(system.grains[g]).head<3>();
+  Eigen::VectorXd own(static_cast<Eigen::Index>(system.velocities.size()));
+  Eigen::Index row = 0;
+  for (const auto& [grain, component] : system.velocities) own[row++] = all(component, grain);
   return own;
 }
 
@@ -93,11 +92,11 @@ Loads ShearedImplicit::follow(const StepTask& task, const ForcedMotion& forced, 
   const ShearedSystem& system = factor_->system;
   const int spheres = built.grains.spheres.size();
   const Loads pressures = pressure_loads(built, solution);
-  const ForcedMotion others{forced.start, forced.held, without_velocities(factor_->yielding, spheres)};
-  solution.motion = others.moved_by(pressures);
-  for (std::size_t g = 0; g < system.grains.size(); ++g)
-    solution.motion.col(system.grains[g]).head<3>() +=
-        factor_->unknowns.segment<3>(system.pressures + 3 * static_cast<Eigen::Index>(g));
+  const ForcedMotion faces{forced.start, forced.held, of_faces(factor_->yielding, spheres)};
+  solution.motion = faces.moved_by(pressures);
+  Eigen::Index row = system.pressures;
+  for (const auto& [grain, component] : system.velocities)
+    solution.motion(component, grain) += factor_->unknowns[row++];
   rates_of(built, solution.motion, *problem.team, solution.rates);
   spread_over_pores(growth, built.throats, solution.rates);
   return forced.held + pressures + shear_forces_of(built, problem.fluid.viscosity, solution.motion);
