@@ -257,7 +257,6 @@ TEST(ShearedSteps, ErrAsLongStepsWithoutShearDo) {
       const Eigen::Matrix3Xd fine = velocities(Coupling::explicit_step, 0.25);
       errors.push_back((velocities(coupling, 20.0) - fine).norm() / fine.norm());
     }
-    std::printf("errors %g %g\n", errors[0], errors[1]);
     EXPECT_LT(errors[1], 1.5 * errors[0]);
     EXPECT_LT(errors[1], 0.05);
   }

@@ -41,8 +41,8 @@ constexpr SolverAbilities table[] = {
      false, true, 1e-7},
     {Solver::cg, true, nullptr, "pfv", "pfv", Ordering::automatic, false, false, true, false, true, false, true,
      1e-10},
-    {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, true, false, true,
-     1e-10},
+    {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, true, false,
+     true, 1e-10},
 };
 
 /// Who makes an ordering for a solver.
