@@ -61,6 +61,7 @@ void ShearedImplicit::factor(const StepTask& task, Matrix6Xd yielding) {
   if (!factor_) factor_.emplace();
   const bool kept = factor_->yielding.cols() == yielding.cols() && factor_->yielding == yielding;
   if (factor_->solver && kept) return;
+  forget_factor();  // whatever goes wrong from here on
   const SymmetricMatrix old = std::move(factor_->system.matrix);
   const std::vector<int> old_last = std::move(factor_->system.last);
   {
