@@ -20,6 +20,7 @@ import long_lids
 import long_steps
 import maps
 import regions
+import sheared
 import speed
 import spins
 import stiffness
@@ -27,7 +28,7 @@ import thesis
 from tables import write_page
 
 TABLES = {"limits": limits.table, "beyond": beyond.table, "long_steps": long_steps.table,
-          "longer": long_steps.longer, "long_lids": long_lids.table, "convergence": convergence.table,
+          "longer": long_steps.longer, "sheared": sheared.table, "sheared_accuracy": sheared.accuracy, "long_lids": long_lids.table, "convergence": convergence.table,
           "accuracy": accuracy.table, "consolidations": consolidations.table, "spins": spins.table,
           "terzaghi": compressible.terzaghi, "jumps": jumps.table, "speed": speed.table,
           "costs": costs.table, "maps": maps.table, "stiffness": stiffness.table,

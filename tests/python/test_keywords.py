@@ -58,7 +58,8 @@ class Keywords(unittest.TestCase):
                                 ({"tolerance": 1e-8}, "supernodal"), ({"cells": (2, 2, 2)}, "takes no cells"),
                                 ({"model": "darcy_grid"}, "needs the numbers of its cells"),
                                 ({"viscosity": float("nan")}, "viscosity"), ({"threads": True}, "threads"),
-                                ({"shear_viscous": True, "coupling": "implicit"}, "no implicit step")):
+                                ({"shear_viscous": True, "coupling": "implicit", "solver": "cholmod"},
+                                 "no implicit steps with shear")):
             with self.subTest(keywords=keywords), self.assertRaisesRegex(pfv.InputError, words):
                 pfv.Flow(UNIT, **keywords)
         for keywords in ({"viscosity": None}, {"solver": object()}, {"viscosity": 1j}):

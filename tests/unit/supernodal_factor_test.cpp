@@ -112,10 +112,11 @@ SymmetricMatrix grid(int nx, int ny, int nz, double tie) {
   return matrix;
 }
 
-Eigen::VectorXd solution(SparseCholesky& factor, const SymmetricMatrix& matrix, Team& team) {
+Eigen::VectorXd solution(SparseCholesky& factor, const SymmetricMatrix& matrix, Team& team,
+                         const std::vector<double>& signs = {}) {
   Eigen::VectorXd b(matrix.size()), x(matrix.size());
   for (int i = 0; i < matrix.size(); ++i) b[i] = number(i);
-  factor.factorize(matrix.rows(), team);
+  factor.factorize(matrix.rows(), team, signs);
   factor.solve(b.data(), x.data(), team);
   return x;
 }
@@ -156,6 +157,45 @@ TEST(SupernodalFactor, IsThatOfADenseMatrix) {
     EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm()) << matrix.size();
     EXPECT_EQ(solution(factor, matrix, team), x) << "again";
   }
+}
+
+/// [H S; S^T -G] of a matrix [H S; S^T G], the unknowns of both mixed; the signs of its pivots.
+std::vector<double> make_quasi_definite(SymmetricMatrix& matrix) {
+  std::vector<double> signs(matrix.size());
+  for (int i = 0; i < matrix.size(); ++i) signs[i] = number(i) > 0.2 ? -1.0 : 1.0;
+  for (int i = 0; i < matrix.size(); ++i)
+    for (int k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
+      if (signs[i] < 0.0 && signs[matrix.column[k]] < 0.0) matrix.value[k] *= -1.0;
+  return signs;
+}
+
+TEST(SupernodalFactor, TakesPivotsOfBothSigns) {
+  for (const int width : {3, 18}) {
+    SymmetricMatrix matrix = grid(width, width, width, 1.0);
+    const std::vector<double> signs = make_quasi_definite(matrix);
+    Eigen::VectorXd b(matrix.size());
+    for (int i = 0; i < matrix.size(); ++i) b[i] = number(i);
+    SparseCholesky factor;
+    factor.analyze(matrix.rows(), metis_ordering(matrix));
+    Team alone;
+    const Eigen::VectorXd x = solution(factor, matrix, alone, signs);
+    EXPECT_LT((multiply(matrix, x) - b).norm(), 1e-10 * b.norm()) << width;
+    for (const int threads : {2, 3}) {
+      Team team(threads);
+      EXPECT_EQ(solution(factor, matrix, team, signs), x) << threads;
+    }
+    // a sign that a pivot has not is no pivot
+    EXPECT_THROW(solution(factor, matrix, alone), NotPositiveDefinite);
+  }
+}
+
+TEST(SupernodalFactor, SignsThatAreAllPositiveAreNone) {
+  const SymmetricMatrix matrix = grid(18, 18, 18, 1.0);
+  SparseCholesky factor;
+  factor.analyze(matrix.rows(), metis_ordering(matrix));
+  Team team;
+  const Eigen::VectorXd x = solution(factor, matrix, team);
+  EXPECT_EQ(solution(factor, matrix, team, std::vector<double>(matrix.size(), 1.0)), x);
 }
 
 TEST(SupernodalFactor, SaysWhereNoPivotIsLeft) {

@@ -100,7 +100,8 @@ class FlowModel {
   /// * implicit: the same velocities; pressures and the velocities that follow from all forces are found together
   ///   with the denser matrix A = G + theta dt S^T M^-1 S, factored anew when a mass or dt changes. Continuity
   ///   holds exactly for v(n+1/2) + theta (v(n+3/2) - v(n+1/2)), so that over many steps the volumes of fluid and
-  ///   grains go together. Cost: one solve of A.
+  ///   grains go together. Cost: one solve of A. With shear viscous forces the velocities of the grains stay
+  ///   unknowns beside the pressures, at about the same cost; with torques too, two to three times that.
   ///
   /// The result is valid until the next call. Throws InputError for a coupling that the model does not have.
   virtual const Forces& advance(const Packing& packing, double dt, const Step& step = {}) = 0;

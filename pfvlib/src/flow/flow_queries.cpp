@@ -125,9 +125,9 @@ Report Flow::report() const {
   report.outside = report.spheres - built.grains.spheres.size();
   add_account(report, parts_->memory, built, parts_->fluid, solution);
   if (parts_->forces.total.cols() > 0) report.force_sum = parts_->forces.total.rowwise().sum();
-  report.residual =
-      relative_residual(solution.implicit ? parts_->schemes.implicit().matrix() : built.kept.system.matrix,
-                        solution.unknown_pressures, solution.right_side);
+  report.residual = solution.implicit
+                        ? parts_->schemes.implicit().residual(solution)
+                        : relative_residual(built.kept.system.matrix, solution.unknown_pressures, solution.right_side);
   report.counts = parts_->work.counts;
   report.seconds = parts_->work.seconds;
   report.wall_seconds = parts_->work.wall_seconds;

@@ -11,23 +11,30 @@
 namespace pfv {
 
 /// Two spheres that share a facet of the power diagram: what the fluid between them resists when they
-/// slide past each other.
+/// slide past each other. In periodic boxes the second may stand for one of its images.
 struct ShearPair {
   int first, second;          ///< columns of the spheres
+  Eigen::Vector3i periods;    ///< by which that image stands beside the second
   double area;                ///< S: of the shared facet, m²
   double hydraulic_radius;    ///< R_h of the throats around the pair, sum of phi over sum of gamma, m
   Eigen::Vector3d direction;  ///< unit vector from the first centre to the second
 };
 
-/// All pairs with an area and a hydraulic radius > 0. Pure; cost: one pass over the facets and a sort.
-/// Not for periodic boxes, whose facets join images.
-std::vector<ShearPair> shear_pairs(const PoreNetwork& network, const Throats& throats,
-                                   const Spheres& spheres);
+/// All pairs with an area and a hydraulic radius > 0, each once; none of a sphere with its own images, which
+/// move as it does. `vertices`: what the network's vertices stand for. Pure; cost: one pass over the facets and a
+/// sort.
+std::vector<ShearPair> shear_pairs(const PoreNetwork& network, const Throats& throats, const Spheres& spheres,
+                                   const Spheres& vertices);
+
+/// What a pair resists relative velocities with, kg/s: mu / R_h S across its direction, none along it.
+Eigen::Matrix3d resistance_of(const ShearPair& pair, double viscosity);
 
 /// Shear viscous forces (Catalano 2012 eqs. 6.29-6.30): mu / R_h S times the tangential relative velocity
 /// of the centres, 3 x N, N. Each pair is an action and its reaction along the sliding; walls take none
-/// and nothing turns.
+/// and nothing turns. `of_periods`: how much faster an image moves than its sphere, one column for a period along
+/// each axis, m/s.
 Eigen::Matrix3Xd shear_forces(const std::vector<ShearPair>& pairs, double viscosity,
-                              const Eigen::Ref<const Eigen::Matrix3Xd>& velocities);
+                              const Eigen::Ref<const Eigen::Matrix3Xd>& velocities,
+                              const Eigen::Matrix3d& of_periods = Eigen::Matrix3d::Zero());
 
 }  // namespace pfv

@@ -2,6 +2,7 @@
 #include "solve/implicit_system.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -116,6 +117,19 @@ SymmetricMatrix sum_of(const SymmetricMatrix& g, const std::vector<double>& pins
   return a;
 }
 
+/// Keeps the pins of sets that nothing yields to; says which others there are.
+std::vector<double> freed_pins(const PressureSystem& system, const Unknowns& unknowns, const YieldingRows& rows,
+                               std::vector<Isolated>& held) {
+  std::vector<double> pins(unknowns.count, 0.0);
+  for (const Isolated& isolated : system.isolated) {
+    if (yields_to(isolated, unknowns, rows))
+      pins[isolated.unknown] = isolated.pin;
+    else
+      held.push_back(isolated);
+  }
+  return pins;
+}
+
 }  // namespace
 
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
@@ -123,14 +137,112 @@ ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& u
                                  const Matrix6Xd& yielding) {
   const YieldingRows rows = yielding_rows(unknowns, forces, bases, yielding);
   ImplicitSystem result;
-  std::vector<double> pins(unknowns.count, 0.0);
-  for (const Isolated& isolated : system.isolated) {
-    if (yields_to(isolated, unknowns, rows))
-      pins[isolated.unknown] = isolated.pin;
-    else
-      result.isolated.push_back(isolated);
-  }
+  const std::vector<double> pins = freed_pins(system, unknowns, rows, result.isolated);
   result.matrix = sum_of(system.matrix, pins, rows);
+  return result;
+}
+
+Matrix6Xd of_faces(Matrix6Xd yielding, int spheres) {
+  yielding.leftCols(spheres).setZero();
+  return yielding;
+}
+
+namespace {
+
+using Velocity = ShearedSystem::Velocity;
+
+/// M/dt + R, row by row.
+using SparseRows = std::vector<std::map<int, double>>;
+
+std::vector<Velocity> unknown_velocities(const Matrix6Xd& yielding, int spheres) {
+  std::vector<Velocity> velocities;
+  for (int k = 0; k < spheres; ++k)
+    for (int c = 0; c < 6; ++c)
+      if (yielding(c, k) > 0.0) velocities.push_back({k, c});
+  return velocities;
+}
+
+SparseRows resistances(const std::vector<Velocity>& velocities, const Matrix6Xd& yielding, int spheres,
+                       const std::vector<ShearPair>& pairs, double viscosity) {
+  std::vector<std::array<int, 3>> number(spheres, {-1, -1, -1});
+  SparseRows rows(velocities.size());
+  for (int i = 0; i < static_cast<int>(velocities.size()); ++i) {
+    const auto [grain, component] = velocities[i];
+    if (component < 3) number[grain][component] = i;
+    rows[i][i] = 1.0 / yielding(component, grain);
+  }
+  const auto add = [&](int of, int by, const Eigen::Matrix3d& block) {
+    for (int c = 0; c < 3; ++c)
+      for (int d = 0; d < 3; ++d)
+        if (number[of][c] >= 0 && number[by][d] >= 0) rows[number[of][c]][number[by][d]] += block(c, d);
+  };
+  for (const ShearPair& pair : pairs) {
+    const Eigen::Matrix3d resistance = resistance_of(pair, viscosity);
+    add(pair.first, pair.first, resistance);
+    add(pair.second, pair.second, resistance);
+    add(pair.first, pair.second, -resistance);
+    add(pair.second, pair.first, -resistance);
+  }
+  return rows;
+}
+
+void end_row(SymmetricMatrix& matrix) { matrix.row_begin.push_back(static_cast<int>(matrix.column.size())); }
+
+void add_entry(SymmetricMatrix& matrix, int column, double value) {
+  matrix.column.push_back(column);
+  matrix.value.push_back(value);
+}
+
+/// [ -a  -S^T ]   `loads`: S of the grains that yield, by row and by unknown; `first`: where the velocities of
+/// [ -S   h   ]   each of these rows begin.
+SymmetricMatrix joined(const SymmetricMatrix& a, const YieldingRows& loads, const std::vector<int>& first,
+                       const std::vector<Velocity>& velocities, const SparseRows& h) {
+  SymmetricMatrix m;
+  for (int i = 0; i < a.size(); ++i) {
+    for (int k = a.row_begin[i]; k < a.row_begin[i + 1]; ++k) add_entry(m, a.column[k], -a.value[k]);
+    for (const auto& [row, load] : loads.of_unknown[i])
+      for (int v = first[row]; v < first[row + 1]; ++v) add_entry(m, a.size() + v, -load[velocities[v].component]);
+    end_row(m);
+  }
+  for (std::size_t row = 0; row + 1 < first.size(); ++row)
+    for (int v = first[row]; v < first[row + 1]; ++v) {
+      for (const auto& [unknown, load] : loads.of_row[row]) add_entry(m, unknown, -load[velocities[v].component]);
+      for (const auto& [other, value] : h[v]) add_entry(m, a.size() + other, value);
+      end_row(m);
+    }
+  return m;
+}
+
+/// Where the velocities of each grain among them begin, and their end.
+std::vector<int> begins_of(const std::vector<Velocity>& velocities) {
+  std::vector<int> first;
+  for (int v = 0; v < static_cast<int>(velocities.size()); ++v)
+    if (v == 0 || velocities[v].grain != velocities[v - 1].grain) first.push_back(v);
+  first.push_back(static_cast<int>(velocities.size()));
+  return first;
+}
+
+}  // namespace
+
+ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
+                               const Bases& bases, const Matrix6Xd& yielding,
+                               const std::vector<ShearPair>& pairs, double viscosity) {
+  const int spheres = forces.spheres;
+  ShearedSystem result;
+  result.pressures = unknowns.count;
+  result.velocities = unknown_velocities(yielding, spheres);
+  const std::vector<double> pins =
+      freed_pins(system, unknowns, yielding_rows(unknowns, forces, bases, yielding), result.isolated);
+  for (int k = 0; k < unknowns.count; ++k)
+    if (pins[k] != 0.0) result.last.push_back(k);
+  const YieldingRows faces = yielding_rows(unknowns, forces, bases, of_faces(yielding, spheres));
+  Matrix6Xd grains = Matrix6Xd::Zero(6, yielding.cols());
+  for (const auto& [grain, component] : result.velocities) grains(component, grain) = 1.0;
+  result.matrix = joined(sum_of(system.matrix, pins, faces), yielding_rows(unknowns, forces, bases, grains),
+                         begins_of(result.velocities), result.velocities,
+                         resistances(result.velocities, yielding, spheres, pairs, viscosity));
+  result.signs.assign(result.matrix.size(), 1.0);
+  std::fill_n(result.signs.begin(), result.pressures, -1.0);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "physics/force_matrix.hpp"
+#include "physics/shear_forces.hpp"
 #include "physics/volume_rates.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/pressure_system.hpp"
@@ -26,5 +27,33 @@ struct ImplicitSystem {
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
                                  const ForceMatrix& forces, const Bases& bases,
                                  const Matrix6Xd& yielding);
+
+/// The same step where shear forces -R v join the velocities of neighbours: (M/dt + R)^-1 is full, so that what the
+/// grains yield by stays unknown beside the pressures:
+///
+///     [ -(G + S_f^T B_f S_f)   -S^T     ] [p]   [-b]
+///     [ -S                     M/dt + R ] [u] = [ f]
+///
+/// S_f, B_f: of the faces. Quasi-definite: L D L^T exists in any order.
+struct ShearedSystem {
+  struct Velocity {
+    int grain, component;  ///< column and row of a Motion: 0-2 velocity, 3-5 spin
+  };
+  SymmetricMatrix matrix;
+  std::vector<double> signs;  ///< of the pivots: -1 of the pressures, which come first, 1 of the velocities
+  int pressures = 0;
+  std::vector<Velocity> velocities;
+  std::vector<Isolated> isolated;  ///< as of ImplicitSystem
+  /// Pressures that nothing but grains determines: their pivots come after those of the grains.
+  std::vector<int> last;
+};
+
+/// `pairs` and `viscosity`: R.
+ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
+                               const Bases& bases, const Matrix6Xd& yielding,
+                               const std::vector<ShearPair>& pairs, double viscosity);
+
+/// Of the faces alone: what is eliminated from a sheared system.
+Matrix6Xd of_faces(Matrix6Xd yielding, int spheres);
 
 }  // namespace pfv

@@ -5,6 +5,7 @@
 
 #include <string>
 #include <sys/mman.h>
+#include <utility>
 
 namespace pfv {
 
@@ -41,11 +42,13 @@ void SparseCholesky::make_room() {
 #endif
 }
 
-void SparseCholesky::factorize(const SymmetricRows& matrix, Team& team) {
+void SparseCholesky::factorize(const SymmetricRows& matrix, Team& team, const std::vector<double>& signs) {
   make_room();
-  const int lost = numeric_.factorize(matrix, lost_pivot, values_.get(), team);
+  std::vector<double> in_order(signs.size());
+  for (std::size_t k = 0; k < signs.size(); ++k) in_order[k] = signs[symbolic_.permutation()[k]];
+  const int lost = numeric_.factorize(matrix, lost_pivot, in_order, values_.get(), team);
   if (lost != SupernodalFactor::none) throw NotPositiveDefinite(symbolic_.permutation()[lost]);
-  solve_.pack(numeric_.blocks(), values_.get());
+  solve_.pack(numeric_.blocks(), values_.get(), std::move(in_order));
 }
 
 }  // namespace pfv

@@ -12,8 +12,9 @@
 
 namespace pfv {
 
-/// The supernodal factorisation P A P^T = L L^T and solves with it. Silent; every failure is a
-/// SparseError.
+/// The supernodal factorisation P A P^T = L L^T and solves with it; or L D L^T, D = 1 or -1, of a matrix that is
+/// quasi-definite: [H S; S^T -G] with H and G positive definite has such a factor in any order (Vanderbei 1995, SIAM
+/// J. Optim. 5). Silent; every failure is a SparseError.
 class SparseCholesky {
  public:
   /// `single`: see SupernodalSolve.
@@ -25,7 +26,8 @@ class SparseCholesky {
   void analyze(const SymmetricRows& matrix, const std::vector<int>& permutation);
   /// L for the values of a matrix with the analysed pattern. Throws NotPositiveDefinite, also where the
   /// matrix is so nearly singular that rounding has used up every digit of a pivot.
-  void factorize(const SymmetricRows& matrix, Team& team);
+  /// `signs` of the pivots by rows of the matrix, 1 or -1; none: all are positive.
+  void factorize(const SymmetricRows& matrix, Team& team, const std::vector<double>& signs = {});
   /// x = A^-1 b.
   void solve(const double* b, double* x, Team& team) { solve_.solve(b, x, team); }
   /// Stored entries of the analysed L, with the zeros that relaxed supernodes take in.

@@ -20,18 +20,20 @@ constexpr int pieces_per_thread = 4;
 
 constexpr int rounded_up(int number, int step) { return (number + step - 1) / step * step; }
 
-/// Cholesky of a small triangle, column-major, in place.
-int eliminate_triangle(double* triangle, std::ptrdiff_t stride, int columns,
+/// L of a small triangle, column-major, in place. `inverse_pivot`: with the sign of the pivot.
+int eliminate_triangle(double* triangle, std::ptrdiff_t stride, int columns, const double* signs,
                        const double* least_pivot, double* inverse_pivot) {
   for (int j = 0; j < columns; ++j) {
     double* const column = triangle + j * stride;
     for (int k = 0; k < j; ++k) {
       const double* const left = triangle + k * stride;
-      for (int i = j; i < columns; ++i) column[i] -= left[i] * left[j];
+      const double row = signs ? signs[k] * left[j] : left[j];
+      for (int i = j; i < columns; ++i) column[i] -= left[i] * row;
     }
-    if (!(column[j] > least_pivot[j])) return j;
-    column[j] = std::sqrt(column[j]);
-    inverse_pivot[j] = 1.0 / column[j];
+    const double sign = signs ? signs[j] : 1.0, pivot = sign * column[j];
+    if (!(pivot > least_pivot[j])) return j;
+    column[j] = std::sqrt(pivot);
+    inverse_pivot[j] = sign / column[j];
     for (int i = j + 1; i < columns; ++i) column[i] *= inverse_pivot[j];
   }
   return SupernodalFactor::none;
@@ -112,11 +114,30 @@ void SupernodalFactor::take_updates(int block, WorkSpace& work) {
     work.updating.push_back(from);
 }
 
-/// to -= from(:, all) from(columns, all)^T in some rows of `to`. `columns` counts rows of `from`.
+/// Rows of L D for some columns of a block, each at its place in a block of its own; L itself where D is 1. What
+/// the other columns hold stays.
+const double* SupernodalFactor::times_signs(const FactorBlock& block, Range rows, Range columns,
+                                            WorkSpace& work) const {
+  const double* const values = values_ + block.first_value;
+  if (!signs_) return values;
+  for (int c = columns.begin; c < columns.end; ++c) {
+    const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(c) * block.height;
+    const double sign = signs_[block.first_column + c];
+    for (int i = rows.begin; i < rows.end; ++i) work.with_signs[column + i] = sign * values[column + i];
+  }
+  return work.with_signs.data();
+}
+
+/// Of a block whose diagonal has been eliminated last.
+const double* SupernodalFactor::top_of(const FactorBlock& block, const WorkSpace& work) const {
+  return signs_ ? work.with_signs.data() : values_ + block.first_value;
+}
+
+/// to -= from(:, all) D from(columns, all)^T in some rows of `to`. `columns` counts rows of `from`.
 void SupernodalFactor::subtract(const FactorBlock& from, Range columns, const FactorBlock& to,
-                                Range target_rows, const std::vector<int>& place,
-                                std::vector<int>& rows) const {
+                                Range target_rows, const std::vector<int>& place, WorkSpace& own) const {
   const kernels::FactorKernels& k = kernels::factor_kernels();
+  std::vector<int>& rows = own.rows;
   const int* const from_rows = rows_of(from);
   int begin = columns.begin, end = from.height;
   const auto above = [&](int row, int target) { return place[row] < target; };
@@ -134,21 +155,23 @@ void SupernodalFactor::subtract(const FactorBlock& from, Range columns, const Fa
                 static_cast<std::ptrdiff_t>(from_rows[columns.begin + j] - to.first_column) *
                     to.height;
   const double* const values = values_ + from.first_value;
+  const double* const top = times_signs(from, columns, {0, from.columns}, own);
   const int height = k.lanes * k.update_vectors;
   for (int i = begin; i < end; i += height) {
     const int tile = std::min(height, end - i), vectors = (tile + k.lanes - 1) / k.lanes;
     for (int j = 0; j < count && columns.begin + j < i + tile; j += k.update_columns)
       k.update[vectors - 1][std::min(k.update_columns, count - j) - 1](
-          {values + i, values + columns.begin + j, from.height, from.columns, tile, &rows[i],
+          {values + i, top + columns.begin + j, from.height, from.columns, tile, &rows[i],
            column + j});
   }
 }
 
 /// L of the block's own triangle. Returns the column that has no pivot, or `none`.
 int SupernodalFactor::eliminate_diagonal(const FactorBlock& block, const double* least_pivot,
-                                         double* inverse_pivot) const {
+                                         double* inverse_pivot, WorkSpace& work) const {
   const kernels::FactorKernels& k = kernels::factor_kernels();
   double* const values = values_ + block.first_value;
+  const double* const top = top_of(block, work);
   const std::ptrdiff_t stride = block.height;
   int rows[strip_width];
   std::iota(rows, rows + strip_width, 0);
@@ -160,23 +183,26 @@ int SupernodalFactor::eliminate_diagonal(const FactorBlock& block, const double*
     for (int i = 0; done > 0 && i < width; i += k.lanes)
       for (int j = 0; j < width; j += k.update_columns)
         k.update[0][std::min(k.update_columns, width - j) - 1](
-            {values + done + i, values + done + j, stride, done, std::min(k.lanes, width - i),
+            {values + done + i, top + done + j, stride, done, std::min(k.lanes, width - i),
              rows + i, column + j});
-    const int lost = eliminate_triangle(triangle, stride, width, least_pivot + done,
-                                        inverse_pivot + done);
+    const int lost = eliminate_triangle(triangle, stride, width, signs_ ? signs_ + block.first_column + done : nullptr,
+                                        least_pivot + done, inverse_pivot + done);
     if (lost != none) return done + lost;
+    times_signs(block, {done, done + width}, {done, done + width}, work);
     const int height = k.lanes * k.strip_vectors;
     for (int i = done + width; i < block.columns; i += height) {
       const int tile = std::min(height, block.columns - i);
       k.eliminate[(tile + k.lanes - 1) / k.lanes - 1][width - 1](
-          {values + done * stride + i, values + i, values + done, triangle, inverse_pivot + done,
+          {values + done * stride + i, values + i, top + done, top + done * stride + done, inverse_pivot + done,
            stride, done, tile});
     }
+    times_signs(block, {done + width, block.columns}, {done, done + width}, work);
   }
   return none;
 }
 
-void SupernodalFactor::eliminate_rows(const FactorBlock& block, const double* inverse_pivot,
+/// `top`: the block's triangle times D.
+void SupernodalFactor::eliminate_rows(const FactorBlock& block, const double* inverse_pivot, const double* top,
                                       Range rows) const {
   const kernels::FactorKernels& k = kernels::factor_kernels();
   double* const values = values_ + block.first_value;
@@ -187,7 +213,7 @@ void SupernodalFactor::eliminate_rows(const FactorBlock& block, const double* in
     for (int done = 0; done < block.columns; done += strip_width)
       k.eliminate[(tile + k.lanes - 1) / k.lanes - 1]
                  [std::min(strip_width, block.columns - done) - 1](
-          {values + done * stride + i, values + i, values + done, values + done * stride + done,
+          {values + done * stride + i, values + i, top + done, top + done * stride + done,
            inverse_pivot + done, stride, done, tile});
   }
 }
@@ -214,14 +240,14 @@ int SupernodalFactor::factor_subtree(Range range, const SymmetricRows& matrix, W
       const int* const rows = rows_of(b);
       Range columns{done_rows_[from], done_rows_[from]};
       while (columns.end < b.height && rows[columns.end] < last_column) ++columns.end;
-      subtract(b, columns, block, {0, block.height}, work.place, work.rows);
+      subtract(b, columns, block, {0, block.height}, work.place, work);
       done_rows_[from] = columns.end;
       link(from, false);
     }
-    for (int j = 0; j < block.columns; ++j) pivot[j] *= lost_pivot_;
-    const int lost = eliminate_diagonal(block, pivot, inverse_pivot);
+    for (int j = 0; j < block.columns; ++j) pivot[j] = lost_pivot_ * std::abs(pivot[j]);
+    const int lost = eliminate_diagonal(block, pivot, inverse_pivot, work);
     if (lost != none) return block.first_column + lost;
-    eliminate_rows(block, inverse_pivot, {block.columns, block.height});
+    eliminate_rows(block, inverse_pivot, top_of(block, work), {block.columns, block.height});
     done_rows_[current] = block.columns;
     link(current, false);
   }
@@ -267,22 +293,24 @@ int SupernodalFactor::factor_above(const SymmetricRows& matrix, std::vector<Work
     };
     in_pieces(0, products, [&](Range rows, WorkSpace& own) {
       for (std::size_t k = 0; k < shared.updating.size(); ++k)
-        subtract(blocks_[shared.updating[k]], columns[k], block, rows, shared.place, own.rows);
+        subtract(blocks_[shared.updating[k]], columns[k], block, rows, shared.place, own);
     });
-    for (int j = 0; j < block.columns; ++j) pivot[j] *= lost_pivot_;
-    const int lost = eliminate_diagonal(block, pivot, inverse_pivot);
+    for (int j = 0; j < block.columns; ++j) pivot[j] = lost_pivot_ * std::abs(pivot[j]);
+    const int lost = eliminate_diagonal(block, pivot, inverse_pivot, shared);
     if (lost != none) return block.first_column + lost;
+    const double* const top = top_of(block, shared);
     in_pieces(block.columns, 0.5 * block.height * block.columns * block.columns,
-              [&](Range rows, WorkSpace&) { eliminate_rows(block, inverse_pivot, rows); });
+              [&](Range rows, WorkSpace&) { eliminate_rows(block, inverse_pivot, top, rows); });
     done_rows_[current] = block.columns;
     link(current, true);
   }
   return none;
 }
 
-int SupernodalFactor::factorize(const SymmetricRows& matrix, double lost_pivot, double* values,
-                                Team& team) {
+int SupernodalFactor::factorize(const SymmetricRows& matrix, double lost_pivot, const std::vector<double>& signs,
+                                double* values, Team& team) {
   values_ = values;
+  signs_ = signs.empty() ? nullptr : signs.data();
   lost_pivot_ = lost_pivot;
   first_update_.assign(blocks_.size(), none);
   next_update_.assign(blocks_.size(), none);
@@ -292,6 +320,7 @@ int SupernodalFactor::factorize(const SymmetricRows& matrix, double lost_pivot, 
     own.place.resize(block_of_.size());
     own.rows.resize(tallest_);
     own.updating.reserve(blocks_.size());
+    if (signs_) own.with_signs.resize(static_cast<std::size_t>(tallest_) * block_width + tile_rows);
   }
   std::vector<int> lost(subtrees_.size(), none);
   team.run_with_space(static_cast<int>(subtrees_.size()), [&](int k, int thread) {

@@ -20,7 +20,7 @@ struct FactorBlock {
   std::int64_t first_value;  ///< in the list of values
 };
 
-/// Numeric P A P^T = L L^T on a symbolic factor of CHOLMOD: left-looking by blocks of supernodes (Ng
+/// Numeric P A P^T = L D L^T, D = 1 where nothing else is said, on a symbolic factor of CHOLMOD: left-looking by blocks of supernodes (Ng
 /// and Peyton 1993), with small products in registers that are added where they belong, so that it
 /// needs no work space beside L. CHOLMOD's own calls the BLAS, whose call costs more than the work of
 /// most of these supernodes.
@@ -36,9 +36,11 @@ class SupernodalFactor {
   const std::vector<FactorBlock>& blocks() const { return blocks_; }
 
   static constexpr int none = -1;
-  /// Fills `values` with L by blocks. Returns `none`, or the first column (in the order of
-  /// elimination) whose pivot is not positive or has shrunk below `lost_pivot` of its diagonal entry.
-  int factorize(const SymmetricRows& matrix, double lost_pivot, double* values, Team& team);
+  /// Fills `values` with L by blocks. `signs`: of the pivots, 1 or -1, by columns in the order of elimination;
+  /// none where all are positive. Returns `none`, or the first column (in that order) whose pivot has not its
+  /// sign or has shrunk below `lost_pivot` of its diagonal entry.
+  int factorize(const SymmetricRows& matrix, double lost_pivot, const std::vector<double>& signs, double* values,
+                Team& team);
 
  private:
   /// Where a thread notes which row of the block at hand each row of the matrix is.
@@ -46,6 +48,7 @@ class SupernodalFactor {
     std::vector<int> place;     ///< by rows of the matrix
     std::vector<int> rows;      ///< of a block that is to be subtracted
     std::vector<int> updating;  ///< those blocks
+    std::vector<double> with_signs;  ///< rows of a block times D, in the block's own places; empty without signs
   };
   struct Range {
     int begin, end;
@@ -57,10 +60,12 @@ class SupernodalFactor {
                    WorkSpace& work);
   void take_updates(int block, WorkSpace& work);
   void subtract(const FactorBlock& from, Range columns, const FactorBlock& to, Range target_rows,
-                const std::vector<int>& place, std::vector<int>& rows) const;
-  int eliminate_diagonal(const FactorBlock& block, const double* least_pivot,
-                         double* inverse_pivot) const;
-  void eliminate_rows(const FactorBlock& block, const double* inverse_pivot, Range rows) const;
+                const std::vector<int>& place, WorkSpace& own) const;
+  const double* times_signs(const FactorBlock& block, Range rows, Range columns, WorkSpace& work) const;
+  int eliminate_diagonal(const FactorBlock& block, const double* least_pivot, double* inverse_pivot,
+                         WorkSpace& work) const;
+  const double* top_of(const FactorBlock& block, const WorkSpace& work) const;
+  void eliminate_rows(const FactorBlock& block, const double* inverse_pivot, const double* top, Range rows) const;
   void link(int block, bool above);
   int factor_subtree(Range blocks, const SymmetricRows& matrix, WorkSpace& work);
   int factor_above(const SymmetricRows& matrix, std::vector<WorkSpace>& work, Team& team);
@@ -79,6 +84,7 @@ class SupernodalFactor {
   // while factorising
   double* values_ = nullptr;
   double lost_pivot_ = 0.0;
+  const double* signs_ = nullptr;  ///< null: all are 1
   std::vector<int> first_update_, next_update_;  ///< lists of the blocks that a block waits for
   std::vector<int> done_rows_;                   ///< of each block: rows above have been subtracted
 };

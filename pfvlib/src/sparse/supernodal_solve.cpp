@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace pfv {
 namespace {
@@ -168,7 +169,8 @@ void SupernodalSolve::analyze(const Supernodes& supernodes, const SubtreeCut& cu
 
 // A panel never ends behind the columns that it is packed from, so no column is lost before its
 // turn.
-void SupernodalSolve::pack(const std::vector<FactorBlock>& blocks, double* values) {
+void SupernodalSolve::pack(const std::vector<FactorBlock>& blocks, double* values, std::vector<double> signs) {
+  signs_ = std::move(signs);
   std::int64_t value = 0;
   for (const FactorBlock& block : blocks)
     for_each_piece(block, [&](int done, int width) {
@@ -203,6 +205,7 @@ void SupernodalSolve::substitute(const Value* values, const double* b, double* x
     for (int k = 0; k < part.columns; ++k) y[k] = b[permutation_[part.first_column + k]];
     std::fill_n(y + part.columns, above, 0.0);
     forward(part.panels, values, part.rows.data(), y);
+    for (int k = 0; !signs_.empty() && k < part.columns; ++k) y[k] *= signs_[part.first_column + k];
   });
   for (int k = 0; k < above; ++k) {
     double sum = b[permutation_[top_columns_[k]]];
@@ -210,6 +213,7 @@ void SupernodalSolve::substitute(const Value* values, const double* b, double* x
     top_.y[k] = sum;
   }
   forward(top_.panels, values, top_.rows.data(), top_.y.data());
+  for (int k = 0; !signs_.empty() && k < above; ++k) top_.y[k] *= signs_[top_columns_[k]];
   backward(top_.panels, values, top_.rows.data(), top_.y.data());
   for (int k = 0; k < above; ++k) x[permutation_[top_columns_[k]]] = top_.y[k];
   team.run(parts, [&](int number) {

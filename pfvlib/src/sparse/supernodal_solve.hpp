@@ -47,9 +47,9 @@ class SupernodalSolve {
   void analyze(const Supernodes& supernodes, const SubtreeCut& cut,
                const std::vector<FactorBlock>& blocks, const int* permutation);
   /// Packs values that lie by blocks where they are: they are L for `solve` alone until the next
-  /// factorisation.
-  void pack(const std::vector<FactorBlock>& blocks, double* values);
-  /// x = P^T L^-T L^-1 P b.
+  /// factorisation. `signs`: D by columns in the order of elimination; none: it is 1.
+  void pack(const std::vector<FactorBlock>& blocks, double* values, std::vector<double> signs = {});
+  /// x = P^T L^-T D L^-1 P b.
   void solve(const double* b, double* x, Team& team);
   /// Entries of L that a solve reads twice.
   std::size_t entries() const { return entries_; }
@@ -75,6 +75,7 @@ class SupernodalSolve {
   std::size_t entries_ = 0;
   const int* permutation_ = nullptr;
   const double* values_ = nullptr;  ///< or as many numbers of single precision
+  std::vector<double> signs_;
   std::vector<double> columns_;     ///< of the panel that is being packed
 };
 

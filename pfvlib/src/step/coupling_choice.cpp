@@ -2,6 +2,7 @@
 #include "step/coupling_choice.hpp"
 
 #include "pfv/error.hpp"
+#include "problem/solver_abilities.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -13,10 +14,11 @@ namespace {
 /// The cheaper of the two couplings that go beyond the limit, by what a step costs in solves of the
 /// explicit coupling (doc/stability.md, costs): a stage is a solve and a product with S and S^T, about
 /// 1.6 sqrt(R) of them a step; an implicit step is one solve with a denser factor, made anew `steps`
-/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB.
-Coupling cheaper(double ratio, double steps, Eigen::Index grains) {
+/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB: with shear forces the spins
+/// that torques bring are unknowns, too.
+Coupling cheaper(double ratio, double steps, Eigen::Index grains, const Options& options) {
   constexpr double of_a_stage = 1.15, of_an_implicit_step = 8.0, of_its_factor = 800.0;
-  constexpr Eigen::Index largest = 20000;
+  const Eigen::Index largest = options.shear_viscous && options.torques ? 12000 : 20000;
   const double staged = of_a_stage * 1.6 * std::sqrt(ratio);
   const double implicit = of_an_implicit_step + of_its_factor / steps;
   return grains <= largest && implicit < staged ? Coupling::implicit : Coupling::staged;
@@ -39,10 +41,10 @@ void CouplingChoice::choose(double limit, double dt, const Step& step, const Opt
                                                : unknown;
   if (!(ratio > 1.0))
     chosen_ = Coupling::explicit_step;
-  else if (options.shear_viscous)  // which have no implicit step
+  else if (options.shear_viscous && !abilities_of(options.solver).quasi_definite)
     chosen_ = Coupling::staged;
   else
-    chosen_ = cheaper(ratio, steps, grains);
+    chosen_ = cheaper(ratio, steps, grains, options);
 }
 
 bool CouplingChoice::is_due_after(double strain_of_the_step, std::int64_t network) {

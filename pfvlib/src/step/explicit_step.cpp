@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pfv/error.hpp"
 #include "step/pressure_solve.hpp"
 #include "step/solvability.hpp"
 #include "step/step_scheme.hpp"
 
 namespace pfv {
-
-void refuse_periodic_shear(const Problem& problem) {
-  if (problem.options.shear_viscous && problem.container.any_periodic())
-    throw InputError("shear viscous forces are not known for periodic axes; switch them off");
-}
 
 void find_rates_of_packing(const StepTask& task, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
@@ -22,8 +16,6 @@ void find_rates_of_packing(const StepTask& task, Solution& solution) {
     solution.rates.setZero(built.network.pores());
   refuse_isolated(built, solution, built.kept.system.isolated);
 }
-
-void ExplicitStep::check(const Problem& problem) const { refuse_periodic_shear(problem); }
 
 void ExplicitStep::find(const StepTask& task, Solution& solution) {
   find_rates_of_packing(task, solution);

@@ -2,6 +2,7 @@
 #include "step/implicit_step.hpp"
 
 #include "pfv/error.hpp"
+#include "results/balance_terms.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
 #include "step/pressure_solve.hpp"
@@ -25,8 +26,19 @@ void ImplicitStep::check(const Problem& problem) const {
   check_long_step(problem, Coupling::implicit);
 }
 
+void ImplicitStep::forget_network() {
+  factor_.reset();
+  sheared_.forget_network();
+}
+
 void ImplicitStep::forget_factor() {
   if (factor_) factor_->yielding.resize(6, 0);
+  sheared_.forget_factor();
+}
+
+double ImplicitStep::residual(const Solution& solution) const {
+  return factor_ ? relative_residual(factor_->system.matrix, solution.unknown_pressures, solution.right_side)
+                 : sheared_.residual();
 }
 
 /// Anew where theta dt or a mass has changed.
@@ -99,12 +111,19 @@ void ImplicitStep::find(const StepTask& task, Solution& solution) {
   refuse_undetermined(problem, solution.moving);
   make_force_matrices(built, problem, work.counts);
   make_volume_rates(built, problem, work.counts);
-  factor(task, forced.yielding);
+  const bool sheared = problem.options.shear_viscous;
+  if (sheared)
+    sheared_.factor(task, forced.yielding);
+  else
+    factor(task, forced.yielding);
   solution.relative_pressures.setZero(built.network.pores());
   impose(built, solution);
   forced.held = held_loads(task, solution);  // with the reference pressure just set
-  solve(task, forced, solution);
-  refuse_isolated(built, solution, factor_->system.isolated);
+  if (sheared)
+    sheared_.solve(task, forced, solution);
+  else
+    solve(task, forced, solution);
+  refuse_isolated(built, solution, sheared ? sheared_.isolated() : factor_->system.isolated);
 }
 
 }  // namespace pfv

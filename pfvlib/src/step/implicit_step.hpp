@@ -3,6 +3,7 @@
 
 #include "solve/implicit_system.hpp"
 #include "step/long_step.hpp"
+#include "step/sheared_implicit.hpp"
 
 #include <functional>
 #include <memory>
@@ -16,11 +17,11 @@ class ImplicitStep final : public StepScheme {
   void check(const Problem& problem) const override;
   double direction() const override { return 1.0; }
   void find(const StepTask& task, Solution& solution) override;
-  void forget_network() override { factor_.reset(); }
+  void forget_network() override;
   void forget_factor() override;
 
-  /// A = G + theta S^T (dt/m) S of the last solve.
-  const SymmetricMatrix& matrix() const { return factor_->system.matrix; }
+  /// |b - A x| / |b| of the last solve, A = G + theta S^T (dt/m) S.
+  double residual(const Solution& solution) const;
 
  private:
   struct Factor {
@@ -30,6 +31,7 @@ class ImplicitStep final : public StepScheme {
     Matrix6Xd yielding;  ///< of the grains and faces whose A is in the factor; no columns: none is
   };
   std::optional<Factor> factor_;
+  ShearedImplicit sheared_;  ///< where there are shear forces
 
   void factor(const StepTask& task, const Matrix6Xd& yielding);
   void solve(const StepTask& task, const ForcedMotion& forced, Solution& solution);

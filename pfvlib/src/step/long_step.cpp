@@ -13,7 +13,6 @@ void check_long_step(const Problem& problem, Coupling coupling) {
   check(problem.options, coupling);
   if (!problem.options.forces)
     throw InputError("a staged or implicit step needs forces: switch Options::forces on");
-  refuse_periodic_shear(problem);
 }
 
 namespace {

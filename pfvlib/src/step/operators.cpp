@@ -50,7 +50,7 @@ void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& co
         force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
                      built.grains.spheres.size(), {true, false, false}, *problem.team);
   if (problem.options.shear_viscous && !built.operators.shear_pairs)
-    built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.vertices);
+    built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.grains.spheres, built.vertices);
   if (problem.options.sphere_pressure && !built.operators.surface_pressure)
     built.operators.surface_pressure =
         surface_pressure(built.network, built.vertices, built.grains.spheres);
@@ -78,9 +78,14 @@ const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
 Loads shear_forces_of(const BuiltNetwork& built, double viscosity, const Motion& motion) {
   Loads sum = Loads::Zero(6, motion.cols());
   const Eigen::Index spheres = built.grains.spheres.size();
-  if (built.operators.shear_pairs)
-    sum.topLeftCorner(3, spheres) = shear_forces(*built.operators.shear_pairs, viscosity,
-                                                 motion.topLeftCorner(3, spheres));
+  if (!built.operators.shear_pairs) return sum;
+  Eigen::Matrix3d of_periods = Eigen::Matrix3d::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (built.container.periodic[axis])
+      of_periods.col(axis) =
+          (motion.col(spheres + 2 * axis + 1) - motion.col(spheres + 2 * axis)).head<3>();
+  sum.topLeftCorner(3, spheres) = shear_forces(*built.operators.shear_pairs, viscosity,
+                                               motion.topLeftCorner(3, spheres), of_periods);
   return sum;
 }
 

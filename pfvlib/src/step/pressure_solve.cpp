@@ -86,17 +86,14 @@ Eigen::VectorXd sources_of(const BuiltNetwork& built, const Solution& solution) 
 
 }  // namespace
 
-void solve_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& solver,
-                     WorkRecord& work, Solution& solution) {
-  const PhaseClock clock(work.seconds.solve);
+void find_right_side(const BuiltNetwork& built, Solution& solution) {
   solution.relative_pressures.resize(built.network.pores());
   impose(built, solution);
   right_hand_side(built.kept.system, built.unknowns, solution.container, sources_of(built, solution),
                   solution.relative_pressures, solution.right_side);
-  if (built.unknowns.count > 0) {
-    solver.solve(solution.right_side, solution.unknown_pressures);
-    ++work.counts.solve;
-  }
+}
+
+void take_unknown_pressures(const BuiltNetwork& built, const LinearSolver& solver, Solution& solution) {
   const std::vector<int>& unknown = built.unknowns.of_pore;
   for (std::size_t p = 0; p < unknown.size(); ++p)
     if (unknown[p] >= 0)
@@ -106,6 +103,17 @@ void solve_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& 
     throw SolverError(solver.name() +
                       " returned pressures that are not finite; the conductances span too many "
                       "orders of magnitude or the imposed values are too large");
+}
+
+void solve_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& solver,
+                     WorkRecord& work, Solution& solution) {
+  const PhaseClock clock(work.seconds.solve);
+  find_right_side(built, solution);
+  if (built.unknowns.count > 0) {
+    solver.solve(solution.right_side, solution.unknown_pressures);
+    ++work.counts.solve;
+  }
+  take_unknown_pressures(built, solver, solution);
   if (&solver == built.kept.solver.get())
     refine_pressures(built, problem, solver, built.kept.loses_digits, work, solution, [] {});
 }

@@ -41,12 +41,9 @@ void find_rates_of_packing(const StepTask& task, Solution& solution);
 /// Thesis eq. 4.8: the pressures that belong to the velocities given.
 class ExplicitStep final : public StepScheme {
  public:
-  void check(const Problem& problem) const override;
+  void check(const Problem&) const override {}
   double direction() const override { return -1.0; }
   void find(const StepTask& task, Solution& solution) override;
 };
-
-/// Throws InputError where shear forces have no meaning.
-void refuse_periodic_shear(const Problem& problem);
 
 }  // namespace pfv
