@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iomanip>
 #include <limits>
 #include <ostream>
 #include <sstream>
@@ -63,8 +64,11 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
                      "or a number of metres (default m)")
       ->option_text("m|cm|mm|um|METRES")->group(group);
   command.add_flag("--at-rest", arguments.at_rest, "leave the velocities of the file out (default: taken)")->group(group);
-  command.add_option("--box", arguments.box, "flow box, m (required, or --container)")
-      ->type_size(6)->expected(1)->option_text("XLO XHI YLO YHI ZLO ZHI")->group(group);
+  command.add_option("--box", arguments.box,
+                     "flow box, m, or `auto`: the extent of the spheres (required, or\n"
+                     "--container; without both, a dump that is periodic all around\n"
+                     "gives its own)")
+      ->expected(1, 6)->option_text("XLO XHI YLO YHI ZLO ZHI|auto")->group(group);
   command.add_option("--container", arguments.container,
                      "planes at any angle, or a cylinder between two (doc/container.md):\n"
                      "{\"planes\": [{\"name\", \"inward_normal\": [x,y,z], \"offset\"}, ...],\n"
@@ -126,12 +130,24 @@ bool periodic_as_dump(const SolveArguments& arguments) {
   return arguments.periodic == std::vector<std::string>{"dump"};
 }
 
+/// The packing file for what else it says; what a later reading will find there again.
+PackingFile look_into_packing(const SolveArguments& arguments, const std::string& option) {
+  if (detail::is_stream(arguments.packing))
+    throw InputError(option + ": the packing is read twice: give a file, or numbers");
+  return read_packing_file(arguments.packing, {arguments.snapshot, length_unit_of(arguments.length_unit)});
+}
+
+/// Without a box, a container and periodic axes: whether the packing is a dump that is periodic all around.
+bool is_whole_cell(const SolveArguments& arguments) {
+  if (!arguments.box.empty() || arguments.container || !arguments.periodic.empty() || detail::is_stream(arguments.packing))
+    return false;
+  const std::optional<PackingBounds> bounds = look_into_packing(arguments, "--packing").bounds;
+  return bounds && bounds->periodic[0] && bounds->periodic[1] && bounds->periodic[2];
+}
+
 /// Along the periodic axes of the dump its own bounds, which --box must not contradict.
 void apply_dump(const SolveArguments& arguments, Box& box) {
-  if (detail::is_stream(arguments.packing))
-    throw InputError("--periodic dump: the packing is read twice: give a file, or name the axes");
-  const std::optional<PackingBounds> dumped =
-      read_packing_file(arguments.packing, {arguments.snapshot, length_unit_of(arguments.length_unit)}).bounds;
+  const std::optional<PackingBounds> dumped = look_into_packing(arguments, "--periodic dump").bounds;
   if (!dumped || !dumped->any_periodic())
     throw InputError("--periodic dump: " + detail::quoted(arguments.packing) +
                      " is no dump of a simulation box with periodic sides (BOX BOUNDS pp ...): name the axes");
@@ -176,12 +192,26 @@ void apply_periodic(const SolveArguments& arguments, Box& box) {
     box.pressure_gradient[static_cast<int>(axis)] = number("--gradient", arguments.gradient[axis]);
 }
 
+bool box_is_auto(const SolveArguments& arguments) { return arguments.box == std::vector<std::string>{"auto"}; }
+
+void apply_extent_of_spheres(const SolveArguments& arguments, Box& box) {
+  const PackingArrays packing = look_into_packing(arguments, "--box auto").packing;
+  const Eigen::Matrix3Xd reach = packing.radii.transpose().replicate(3, 1);
+  box.lower = (packing.positions - reach).rowwise().minCoeff();
+  box.upper = (packing.positions + reach).rowwise().maxCoeff();
+}
+
 /// The six planes of --box.
 Box box_of(const SolveArguments& arguments) {
   Box box;
-  for (int axis = 0; axis < 3 && !arguments.box.empty(); ++axis) {
-    box.lower[axis] = number("--box", arguments.box[2 * axis]);
-    box.upper[axis] = number("--box", arguments.box[2 * axis + 1]);
+  if (box_is_auto(arguments)) {
+    apply_extent_of_spheres(arguments, box);
+  } else if (!arguments.box.empty()) {
+    if (arguments.box.size() != 6) throw InputError("--box: give six numbers, or auto");
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lower[axis] = number("--box", arguments.box[2 * axis]);
+      box.upper[axis] = number("--box", arguments.box[2 * axis + 1]);
+    }
   }
   apply_periodic(arguments, box);
   check(box);
@@ -327,8 +357,11 @@ void add_solve_options(CLI::App& command, SolveArguments& arguments) {
     if (!option->get_option_text().empty()) option->type_name("VALUE");  // in parser's messages
 }
 
-SolveRequest request_of(const SolveArguments& arguments) {
+SolveRequest request_of(const SolveArguments& given) {
+  SolveArguments arguments = given;
   SolveRequest request;
+  if (is_whole_cell(arguments)) arguments.periodic = {"dump"};
+  request.box_of_file = arguments.box.empty() || box_is_auto(arguments);
   request.packing = arguments.packing;
   request.choice = {arguments.snapshot, length_unit_of(arguments.length_unit)};
   request.at_rest = arguments.at_rest;
@@ -362,6 +395,12 @@ PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks) {
   PackingFile file = read_packing_file(request.packing, request.choice);
   for (const std::string& remark : file.remarks) remarks << "pfv: " << request.packing << ": " << remark << '\n';
   warn_of_periodic_dump(request, file.bounds, remarks);
+  if (request.box_of_file && request.container.is_box) {
+    remarks << "pfv: " << request.packing << ": the flow box was taken from it:" << std::setprecision(12);
+    for (int axis = 0; axis < 3; ++axis)
+      remarks << ' ' << request.container.lower[axis] << ' ' << request.container.upper[axis];
+    remarks << (request.container.any_periodic() ? ", periodic\n" : "\n") << std::setprecision(6);
+  }
   if (request.at_rest) file.packing.velocities.resize(3, 0);
   if (request.at_rest) file.packing.angular_velocities.resize(3, 0);
   return std::move(file.packing);

@@ -32,6 +32,7 @@ struct SolveRequest {
   std::string packing;
   PackingChoice choice;  ///< of the packing file
   bool at_rest = false;  ///< its velocities are left out
+  bool box_of_file = false;  ///< the container is what the packing file says
   Container container;
   Settings settings;
   double time_step = 0.0;  ///< s; 0: none

@@ -5,6 +5,7 @@
 #include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
 #include "pfv/darcy_grid.hpp"
+#include "pfv/flow.hpp"
 #include "pfv/io.hpp"
 
 #include <algorithm>
@@ -88,19 +89,31 @@ void warn_of_size(const Packing& packing, std::ostream& warnings) {
              << " m; lengths are in m: is --length-unit mm missing?\n";
 }
 
+void warn_of_pinned(const SolveRequest& request, const Packing& packing, const Report& report, std::ostream& warnings) {
+  const Counts& counts = report.counts;
+  // in a cell that is periodic all around no pressure has a level
+  if (report.permeability_tensor && counts.pinned_pores == report.pores) return;
+  if (is_unloaded(request, packing))
+    warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
+  else if (counts.pinned_pores > 0)
+    warnings << "pfv: warning: " << counts.pinned_pores
+             << " pores at rest have no way to a pressure: they take the mean imposed one\n";
+}
+
+void warn_of_empty_space(const FlowModel& flow, std::ostream& warnings) {
+  const auto* pores = dynamic_cast<const Flow*>(&flow);
+  const auto warning = pores ? warning_of(pores->empty_space()) : std::nullopt;
+  if (warning) warnings << "pfv: warning: " << *warning << '\n';
+}
+
 void warn(const SolveRequest& request, const FlowModel& flow, const Packing& packing,
           const Report& report, std::ostream& warnings) {
   const Counts& counts = report.counts;
   warn_of_hidden(flow, packing, warnings);
   warn_of_motion(request, packing, report, warnings);
   warn_of_size(packing, warnings);
-  if (report.permeability_tensor && counts.pinned_pores == report.pores) {
-    // a cell that is periodic all around: no pressure has a level there
-  } else if (is_unloaded(request, packing))
-    warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
-  else if (counts.pinned_pores > 0)
-    warnings << "pfv: warning: " << counts.pinned_pores
-             << " pores at rest have no way to a pressure: they take the mean imposed one\n";
+  warn_of_empty_space(flow, warnings);
+  warn_of_pinned(request, packing, report, warnings);
   if (counts.degenerate_throats > 0)
     warnings << "pfv: warning: " << counts.degenerate_throats
              << " throats without positive volume, surface or area: a rule sets their"

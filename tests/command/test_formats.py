@@ -94,6 +94,24 @@ class Formats(CommandTest):
         self.assertEqual(self.read("forces.csv"), self.table)
         self.assertNotIn("no permeability", still.stderr)
 
+    def test_a_box_around_the_spheres_or_of_a_periodic_dump(self):
+        ids, values = grains()
+        low, high = (values[:, :3] - values[:, 3:]).min(axis=0), (values[:, :3] + values[:, 3:]).max(axis=0)
+        box = [repr(float(v)) for pair in zip(low, high) for v in pair]
+        self.solve("--forces", "given.csv", *THROUGH_FLOW, box=["--box", *box])
+        said = self.solve("--forces", "auto.csv", *THROUGH_FLOW, box=["--box", "auto"])
+        self.assertEqual(self.read("given.csv"), self.read("auto.csv"))
+        self.assertIn("the flow box was taken from it: ", said.stderr)
+        self.dump([0])
+        cell = self.write("cell.dump", self.read("grains.dump").replace(b"ff ff ff", b"pp pp pp"))
+        said = self.solve("--report", "cell.json", "--viscosity", "1", packing=cell, box=[])
+        self.assertIn("the flow box was taken from it: 0 1 0 1 0 1, periodic", said.stderr)
+        self.solve("--report", "named.json", "--viscosity", "1", "--periodic", "x,y,z", packing=cell)
+        self.assertEqual(self.json("cell.json")["permeability_tensor"], self.json("named.json")["permeability_tensor"])
+        refused = self.run_pfv("solve", "--packing", "grains.dump", "--viscosity", "1")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--box or --container is required", refused.stderr)
+
     def test_millimetres(self):
         self.dump([0], 1000.0)
         self.forces_of("grains.dump", "--length-unit", "mm")

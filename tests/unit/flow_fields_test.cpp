@@ -113,4 +113,29 @@ TEST(Fields, PoreVolumesAreTheFluidOfTheBox) {
   EXPECT_NEAR(flow.report().pore_volume, 1.0 - solid_volume(packing), 1e-13);
 }
 
+TEST(EmptySpace, IsFoundAboveABedAndNotWithin) {
+  const pfv::PackingArrays dense = support::data_packing("packing_500.csv");
+  pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
+  flow.evaluate(dense.view());
+  EXPECT_EQ(flow.empty_space().part, 0.0);
+  EXPECT_FALSE(pfv::warning_of(flow.empty_space()));
+  pfv::PackingArrays bed;
+  for (Eigen::Index k = 0; k < dense.ids.size(); ++k) {
+    if (dense.positions(2, k) > 0.5) continue;
+    const Eigen::Index n = bed.ids.size();
+    bed.ids.conservativeResize(n + 1);
+    bed.positions.conservativeResize(3, n + 1);
+    bed.radii.conservativeResize(n + 1);
+    bed.ids[n] = dense.ids[k];
+    bed.positions.col(n) = dense.positions.col(k);
+    bed.radii[n] = dense.radii[k];
+  }
+  flow.evaluate(bed.view());
+  const pfv::EmptySpace empty = flow.empty_space();
+  // half of the box beside the pores of the other half, some 40 % of it
+  EXPECT_NEAR(empty.part, 0.5 / (0.5 + 0.5 * 0.4), 0.08);
+  EXPECT_GT(empty.place[2], 0.5);
+  EXPECT_NE(pfv::warning_of(empty)->find("% of the pore volume"), std::string::npos);
+}
+
 }  // namespace

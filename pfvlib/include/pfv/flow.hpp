@@ -17,6 +17,19 @@ struct SliceMeans {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< relative to the grains, m/s
 };
 
+/// Room without spheres, as the pores show it.
+struct EmptySpace {
+  /// From this many spheres of mean volume on a pore is large. Dense packings have none, loose ones (solid fraction
+  /// 0.4) 2 % of their pore volume in them, suspensions of 0.2 17 %; a box around a cylinder 26 % and more.
+  static constexpr double spheres_a_pore = 2.0;
+
+  double part = 0.0;     ///< of the pore volume that large pores hold
+  double largest = 0.0;  ///< volume of the largest pore, as a multiple of the spheres' mean volume
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< its centre, m
+};
+/// A sentence where there is much of it (more than 5 %), else nothing.
+std::optional<std::string> warning_of(const EmptySpace& empty);
+
 /// Flow through the pores of a moving packing: the one owner of state, who alone knows what is stale.
 ///
 ///     pfv::Flow flow(box, fluid, options);
@@ -108,8 +121,11 @@ class Flow final : public FlowModel {
   const std::vector<double>& throat_conductances() const;
   /// Flow rate of each throat, from its first pore to its second, m³/s. Cost: as faces().
   std::vector<double> throat_fluxes() const;
-  /// Volume of each pore's fluid, m³.
+  /// Volume of each pore's fluid, m³: the pore less the union of the spheres. Cost: a pass over the cells.
   Eigen::VectorXd pore_volumes() const;
+  /// Pores that are large beside the spheres: water above a bed, room between a packing and walls that are not its
+  /// own. They conduct without the resistance of grains.
+  EmptySpace empty_space() const;
 
   /// Cost: one pass over the network and, the first time after a triangulation, the exact union of
   /// the spheres.

@@ -115,6 +115,8 @@ std::vector<double> Flow::throat_fluxes() const { return parts_->balance().throa
 
 Eigen::VectorXd Flow::pore_volumes() const { return pfv::pore_volumes(parts_->network()); }
 
+EmptySpace Flow::empty_space() const { return pfv::empty_space(parts_->network()); }
+
 Report Flow::report() const {
   BuiltNetwork& built = parts_->network();
   const Solution& solution = parts_->solution;

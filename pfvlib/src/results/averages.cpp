@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/averages.hpp"
 
+#include "geometry/pi.hpp"
 #include "network/pore_network.hpp"
 #include "pfv/error.hpp"
 #include "physics/pore_velocities.hpp"
 #include "physics/sphere_stresses.hpp"
+
+#include <sstream>
 
 namespace pfv {
 
@@ -153,6 +156,36 @@ double plane_pressure(BuiltNetwork& built, const Solution& solution, int axis, d
 double mean_pressure(const BuiltNetwork& built, const Solution& solution) {
   const Eigen::VectorXd volumes = storage_volumes(built.throats);
   return volumes.size() > 0 ? volumes.dot(solution.pressures) / volumes.sum() : 0.0;
+}
+
+std::optional<std::string> warning_of(const EmptySpace& empty) {
+  constexpr double noticed = 0.05;
+  if (!(empty.part > noticed)) return {};
+  std::ostringstream text;
+  text.precision(2);
+  text << 100.0 * empty.part << " % of the pore volume is in pores larger than two grains; the largest, of "
+       << empty.largest << " grains, is at (" << empty.place.transpose()
+       << ") m: water there flows without the resistance of grains; where it should not be, draw faces and walls "
+          "closer to the grains";
+  return text.str();
+}
+
+EmptySpace empty_space(const BuiltNetwork& built) {
+  const std::vector<double>& volumes = built.throats.pore_fluid_volume;
+  EmptySpace empty;
+  if (volumes.empty() || built.grains.spheres.size() == 0) return empty;
+  const double sphere = 4.0 / 3.0 * pi * built.grains.spheres.radii.array().cube().mean();
+  double sum = 0.0, large = 0.0;
+  int largest = 0;
+  for (int pore = 0; pore < built.network.pores(); ++pore) {
+    sum += volumes[pore];
+    if (volumes[pore] > EmptySpace::spheres_a_pore * sphere) large += volumes[pore];
+    if (volumes[pore] > volumes[largest]) largest = pore;
+  }
+  empty.part = sum > 0.0 ? large / sum : 0.0;
+  empty.largest = volumes[largest] / sphere;
+  empty.place = built.network.pore_centres.col(largest) + built.network.origin;
+  return empty;
 }
 
 }  // namespace pfv

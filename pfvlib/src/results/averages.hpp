@@ -19,6 +19,8 @@ double plane_flux(const BuiltNetwork& built, const Solution& solution, const Bal
 SliceMeans slice_means(const BuiltNetwork& built, const Solution& solution, const Balance& balance,
                        int axis, double lower, double upper);
 
+/// See Flow::empty_space.
+EmptySpace empty_space(const BuiltNetwork& built);
 /// Of the pore whose tetrahedron contains the place. Throws InputError outside the box.
 double pressure_at(const BuiltNetwork& built, const Solution& solution,
                    const Eigen::Vector3d& place);
