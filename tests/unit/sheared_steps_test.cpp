@@ -379,23 +379,35 @@ TEST(ShearedSteps, OfAPeriodicCellAreBrakedAndExact) {
   }
 }
 
-TEST(ShearForces, OfACellAreThoseOfEightOfThemTogether) {
+TEST(ShearForces, OfACellAreThoseOfEightOfThemTogetherAlsoWhereItStretches) {
   const pfv::PackingArrays one = data_packing("bed_periodic_64.csv");
   const Eigen::Index n = one.radii.size();
   std::vector<Sphere> eight;
+  const auto shift = [](int image) { return Eigen::Vector3d(image & 1, image >> 1 & 1, image >> 2); };
   for (int image = 0; image < 8; ++image)
     for (int k = 0; k < n; ++k) {
-      const Eigen::Vector3d x =
-          0.5 * (one.positions.col(k) + Eigen::Vector3d(image & 1, image >> 1 & 1, image >> 2));
+      const Eigen::Vector3d x = 0.5 * (one.positions.col(k) + shift(image));
       eight.push_back({x[0], x[1], x[2], 0.5 * one.radii[k]});
     }
-  Grains alone(one, options(true), periodic_box()), many(packing_of(eight), options(true), periodic_box());
-  for (int image = 0; image < 8; ++image)
-    many.packing.velocities.middleCols(n * image, n) = alone.packing.velocities;
-  const Eigen::Matrix3Xd forces = alone.flow.evaluate(alone.packing.view()).total;
-  const Eigen::Matrix3Xd of_many = many.flow.evaluate(many.packing.view()).total;
-  for (int image = 0; image < 8; ++image)  // of half the size
-    EXPECT_LT((2.0 * of_many.middleCols(n * image, n) - forces).norm(), 1e-8 * forces.norm()) << image;
+  for (const double stretching : {0.0, 1e-8}) {  // m/s, along x; y shrinks as fast
+    const auto box = [&](double by) {
+      pfv::Box stretched = periodic_box();
+      stretched[Face::xhi].velocity = by;
+      stretched[Face::yhi].velocity = -by;
+      return stretched;
+    };
+    Grains alone(one, options(true), box(stretching));
+    Grains many(packing_of(eight), options(true), box(2.0 * stretching));
+    const Eigen::Vector3d of_periods = stretching * Eigen::Vector3d(1.0, -1.0, 0.0);
+    for (int image = 0; image < 8; ++image)
+      many.packing.velocities.middleCols(n * image, n) =
+          alone.packing.velocities.colwise() + Eigen::Vector3d(of_periods.cwiseProduct(shift(image)));
+    const Eigen::Matrix3Xd forces = alone.flow.evaluate(alone.packing.view()).total;
+    const Eigen::Matrix3Xd of_many = many.flow.evaluate(many.packing.view()).total;
+    for (int image = 0; image < 8; ++image)  // of half the size
+      EXPECT_LT((2.0 * of_many.middleCols(n * image, n) - forces).norm(), 1e-8 * forces.norm())
+          << image << ' ' << stretching;
+  }
 }
 
 }  // namespace
