@@ -143,8 +143,9 @@ void expect_forces_of_their_own_velocities(Grains& run, double dt, const std::st
   steady.move(forces, theta * dt);
   const pfv::Forces expected = steady.flow.evaluate(steady.packing.view(), dt);
   EXPECT_LT((forces.total - expected.total).norm(), 1e-9 * expected.total.norm()) << what;
-  if (run.by.torques)
+  if (run.by.torques) {
     EXPECT_LT((forces.torque - expected.torque).norm(), 1e-9 * expected.torque.norm()) << what;
+  }
 }
 
 TEST(ShearedSteps, ImplicitForcesAreThoseOfVelocitiesBetweenThoseTakenAndThoseHandedBack) {
@@ -304,8 +305,9 @@ TEST(ShearedSteps, ComeToRestWhereDragAndShearBearTheLoad) {
     }
     EXPECT_NEAR(force / load, -1.0, 1e-6);
     for (int k = 0; k < run.masses.size(); ++k)
-      if (std::isfinite(run.masses[k]))
+      if (std::isfinite(run.masses[k])) {
         EXPECT_LT((on_grains.col(k) + run.others.col(k)).norm(), 1e-6 * std::abs(load)) << k;
+      }
     EXPECT_GT(run.packing.velocities.norm(), 0.0);
   }
 }
