@@ -2,20 +2,13 @@
 """The STL files of the scenes of scenes/, by name."""
 import math
 
-from plates import funnel, lid, quad, ring, write_mesh
-
-CENTRED = 0.0  # middle of the rings
+from plates import funnel, lid, lying, quad, ring, write_mesh
 
 
 def turned(triangles, angle):
     """About the axis y."""
     c, s = math.cos(angle), math.sin(angle)
     return [tuple((c * x + s * z, y, -s * x + c * z) for x, y, z in triangle) for triangle in triangles]
-
-
-def lying(triangles):
-    """The axis z becomes y."""
-    return [tuple((z_to_x, z, -y) for z_to_x, y, z in triangle) for triangle in triangles]
 
 
 def plate(axis, half=0.025, middle=(0.0, 0.0, 0.0)):
@@ -37,7 +30,7 @@ def can(edges):
 
 
 def drum(sides, radius, length):
-    ends = [ring(sides, radius, z, CENTRED) for z in (0.0, length)]
+    ends = [ring(sides, radius, z) for z in (0.0, length)]
     return lying(funnel(*ends) + lid(ends[0]) + lid(ends[1]))
 
 
@@ -72,7 +65,7 @@ def bucket():
 
 
 MESHES = {
-    "hopper": lambda: funnel(ring(4, 0.012, 0.0, CENTRED, 0.5), ring(4, 0.05, 0.08, CENTRED, 0.5)),
+    "hopper": lambda: funnel(ring(4, 0.012, 0.0, start=0.5), ring(4, 0.05, 0.08, start=0.5)),
     "slide": lambda: plate(2, 0.02),
     "drum": lambda: drum(24, 0.03, 0.03),
     "lifters": lifters,
@@ -85,10 +78,10 @@ MESHES = {
     "can": lambda: [tuple(tuple(1e3 * v for v in corner) for corner in t) for t in can((0.04, 0.03, 0.04))],
     "left": lambda: leaning(-1),
     "right": lambda: leaning(1),
-    "shell": lambda: funnel(ring(24, 0.02, 0.03, CENTRED), ring(24, 0.02, 0.1, CENTRED)),
-    "cone": lambda: funnel(ring(24, 0.006, 0.0, CENTRED), ring(24, 0.02, 0.03, CENTRED)),
+    "shell": lambda: funnel(ring(24, 0.02, 0.03), ring(24, 0.02, 0.1)),
+    "cone": lambda: funnel(ring(24, 0.006, 0.0), ring(24, 0.02, 0.03)),
     "gate": lambda: quad((0.03, -0.005, -0.005), (0.03, 0.035, -0.005), (0.03, 0.035, 0.09), (0.03, -0.005, 0.09)),
-    "ring": lambda: funnel(ring(32, 0.02, -0.005, CENTRED), ring(32, 0.02, 0.06, CENTRED)),
+    "ring": lambda: funnel(ring(32, 0.02, -0.005), ring(32, 0.02, 0.06)),
     "leaning": lambda: quad((-0.005, -0.005, -0.00125), (0.045, -0.005, 0.01125), (0.045, 0.035, 0.01125),
                             (-0.005, 0.035, -0.00125)),
     "blade": lambda: quad((0.0, 0.004, 0.004), (0.0, 0.02, 0.004), (0.0, 0.02, 0.02), (0.0, 0.004, 0.02)),

@@ -9,6 +9,7 @@ import shutil
 import unittest
 
 from coupled import CoupledTest, read_thermo
+from plates import polygon_area
 from scene_meshes import write_meshes
 
 SCENES = pathlib.Path(__file__).resolve().parent / "scenes"
@@ -23,11 +24,6 @@ BALANCE = 1e-10
 
 def circle(radius):
     return math.pi * radius**2
-
-
-def polygon(sides, corner):
-    """Area of a regular polygon."""
-    return 0.5 * sides * corner**2 * math.sin(2 * math.pi / sides)
 
 
 def frustum(below, above, height):
@@ -102,7 +98,7 @@ class Scenes(CoupledTest):
     DRAIN = "container walls region -0.005 0.005 0.01 0.02 -0.03 -0.02 pressure 0"
 
     def test_drum(self):
-        self.accepted("drum", self.DRAIN, 3, lambda _: polygon(24, 0.03) * 0.03)
+        self.accepted("drum", self.DRAIN, 3, lambda _: polygon_area(24, 0.03) * 0.03)
 
     def test_drum_that_is_a_third_full(self):
         self.refused(self.script("drum_low", self.DRAIN), "pores reach around its axis", "take planes", "more spheres")
@@ -159,9 +155,9 @@ class Scenes(CoupledTest):
         self.accepted("shear_cell", fluid, 6, lambda _: 0.04 * 0.03 * self.printed("lid_at"), net=None)
 
     def test_silo(self):
-        cone = frustum(polygon(24, 0.006), polygon(24, 0.02), 0.03)
+        cone = frustum(polygon_area(24, 0.006), polygon_area(24, 0.02), 0.03)
         self.accepted("silo", "container walls face slide pressure 0" + TOP, 50,
-                      lambda top: cone + polygon(24, 0.02) * (top - 0.03))
+                      lambda top: cone + polygon_area(24, 0.02) * (top - 0.03))
 
     def test_column_collapse(self):
         """A box, since the fluid's walls reach as far as others let them, and the gate does not."""
@@ -179,7 +175,7 @@ class Scenes(CoupledTest):
                       net=0.04 * 0.03 * 5e-4 * turn * math.cos(turn * time))
 
     def test_oedometer_ring(self):
-        ring = polygon(32, 0.02)
+        ring = polygon_area(32, 0.02)
         self.accepted("oedometer_ring", "container walls face base pressure 0 face lid pressure 0", 3,
                       lambda _: ring * 0.045, net=0.02 * ring)
 
