@@ -23,6 +23,7 @@ KEYS = {
     "MU": (float, 0.3, "friction between beads and with the hopper"),
     "VISCOSITY": (float, 0.25, "Pa s"),
     "TIME": (float, 0.8, "under the closed cover, s; twice that at twice the viscosity"),
+    "STRAIN": (str, "mean 0.01", "pore strain at which the network is built anew"),
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS, DENSITY, GRAVITY = 2.5e-3, 1e3, 2500.0, 9.81  # m, N/m, kg/m3, m/s2
@@ -60,7 +61,8 @@ def discharge(name, settings, seconds, viscosity=0.0, top="sealed"):
         SCENE, "in.hopper_underwater",
         {"N": settings["N"], "r": RADIUS, "kn": STIFFNESS, "mu": settings["MU"], "H": HEIGHT + 0.001,
          "cover": HEIGHT - 1e-4, "half": TOP, "fill": OUTLET + 0.4 * (TOP - OUTLET), "wet": int(viscosity > 0.0),
-         "top": top, "viscosity": viscosity, "settle": settle, "steps": steps, "every": max(1, steps // RECORDS),
+         "top": top, "viscosity": viscosity, "strain": settings["STRAIN"], "settle": settle, "steps": steps,
+         "every": max(1, steps // RECORDS),
          "report": max(1, steps // 20), "out": out,
          **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},
         out + "_run", scene.Progress(name, settle, settle + steps, DT))
@@ -70,9 +72,8 @@ def discharge(name, settings, seconds, viscosity=0.0, top="sealed"):
 
 def beyond(out):
     """Beads in the hopper whose centre is on the other side of one of its flats: none, if they hold."""
-    beads = np.loadtxt(SCENE / f"{out}_last.dump", skiprows=9, ndmin=2)
-    if beads.size == 0:
-        return 0
+    lines = (SCENE / f"{out}_last.dump").read_text().splitlines()[9:]
+    beads = np.array([line.split() for line in lines], dtype=float).reshape(-1, 6)
     inside = beads[beads[:, 4] > 0.0]
     side = OUTLET + (TOP - OUTLET) * inside[:, 4] / HEIGHT
     return int((abs(inside[:, 2:4]).max(axis=1, initial=0.0) > side).sum())
@@ -89,7 +90,9 @@ def times(run):
 def rate(run, low=5, part=0.6):
     """Beads a second, from the `low`-th to this part of those that left."""
     when = times(run)
-    high = max(low + 1, int(part * (len(when) - 1)))
+    if len(when) <= 2 * low:
+        raise scene.Failure(f"{run['name']}: {len(when) - 1} beads have left; raise TIME until {2 * low} have")
+    high = int(part * (len(when) - 1))
     return (high - low) / (when[high] - when[low])
 
 
