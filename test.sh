@@ -42,7 +42,8 @@ if [ "${1:-}" = long ]; then
   "$root/run.sh" oedometer study
   "$root/run.sh" stability write
   for scene in oedometer_large permeameter deposition darcy_outlet wave_still wave_dense \
-      wave_loose wave_permeability wave_oscillating shear_viscous; do
+      wave_loose wave_permeability wave_oscillating shear_viscous boiling triaxial_cylinder \
+      hopper_underwater drum_underwater; do
     "$root/run.sh" "$scene"
   done
   "$root/run.sh" wave_dense SHAKE=0.5 RATE=100 AMPLITUDE=600

@@ -116,10 +116,11 @@ def liggghts(folder, script, variables, log, progress=None):
     return said, child_seconds() - before
 
 
-def pfv_solve(folder, packing, box, viscosity, report, *words):
-    """Report of `pfv solve` on a packing; box: six numbers."""
-    command = [str(BIN / "pfv"), "solve", "--packing", str(packing), "--box",
-               *[f"{number:.17g}" for number in box], "--viscosity", f"{viscosity:.17g}",
+def pfv_solve(folder, packing, room, viscosity, report, *words):
+    """Report of `pfv solve` on a packing; room: the six numbers of a box, or the name of a container's file."""
+    held = (["--container", room] if isinstance(room, str)
+            else ["--box", *[f"{number:.17g}" for number in room]])
+    command = [str(BIN / "pfv"), "solve", "--packing", str(packing), *held, "--viscosity", f"{viscosity:.17g}",
                "--report", report, *words]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
