@@ -207,7 +207,7 @@ Box box_of(const SolveArguments& arguments) {
   if (box_is_auto(arguments)) {
     apply_extent_of_spheres(arguments, box);
   } else if (!arguments.box.empty()) {
-    if (arguments.box.size() != 6) throw InputError("--box: give six numbers, or auto");
+    if (arguments.box.size() != 6) throw InputError("--box: give six numbers, or auto: see pfv solve --help");
     for (int axis = 0; axis < 3; ++axis) {
       box.lower[axis] = number("--box", arguments.box[2 * axis]);
       box.upper[axis] = number("--box", arguments.box[2 * axis + 1]);

@@ -145,11 +145,10 @@ Eigen::Vector3d along_to_wall(const Eigen::Vector3d& point, const std::array<Ver
   for (int i = 0; i < 3; ++i)
     if (cell[i + 1] == round) own = i;
   Eigen::Vector3d way(rows[own].normal[0], rows[own].normal[1], rows[own].normal[2]);
-  Eigen::Vector3d outwards = spheres.outward(cell[0], round) + spheres.outward(cell[1], round);
-  if (!is_wall(cell[2])) {
-    const Eigen::Vector3d second = spheres.towards(cell[0], cell[1]);
-    outwards = second.cross(spheres.towards(cell[0], cell[2]));
-  }
+  const Eigen::Vector3d second = spheres.towards(cell[0], cell[1]);
+  const Eigen::Vector3d third = spheres.towards(cell[0], cell[cell[2] == round ? 3 : 2]);
+  const Eigen::Vector3d outwards = cell[2] == round ? Eigen::Vector3d(third.cross(second))
+                                                    : Eigen::Vector3d(second.cross(third));
   if (way.dot(outwards) < 0.0) way = -way;
   const Eigen::Vector2d from = wall.in_section(point);
   const Eigen::Vector2d d(wall.first.dot(way), wall.second.dot(way));

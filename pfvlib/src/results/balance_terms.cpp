@@ -86,13 +86,6 @@ double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, 
   return scale > 0.0 ? sum.norm() / scale : 0.0;
 }
 
-double relative_residual(const SymmetricMatrix& matrix, const Eigen::VectorXd& x,
-                         const Eigen::VectorXd& b) {
-  const double scale = b.norm();
-  if (b.size() == 0 || scale == 0.0) return 0.0;
-  return (b - multiply(matrix, x)).norm() / scale;
-}
-
 std::int64_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

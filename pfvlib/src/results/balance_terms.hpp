@@ -3,7 +3,6 @@
 
 #include "pfv/container.hpp"
 #include "pfv/report.hpp"
-#include "solve/linear_solver.hpp"
 
 #include <Eigen/Core>
 #include <array>
@@ -50,10 +49,6 @@ std::optional<double> permeability_of(const Container& container, const std::arr
 /// over what a macroscopic gradient drives where that is more.
 double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, const Container& container,
                            double driven);
-
-/// |b - A x| / |b|; 0 where there is nothing to solve.
-double relative_residual(const SymmetricMatrix& matrix, const Eigen::VectorXd& x,
-                         const Eigen::VectorXd& b);
 
 /// Bytes that the process has held at most.
 std::int64_t peak_memory();

@@ -29,4 +29,11 @@ std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind orderi
   return make_solver(options);
 }
 
+double relative_residual(const SymmetricMatrix& matrix, const Eigen::VectorXd& x,
+                         const Eigen::VectorXd& b) {
+  const double scale = b.norm();
+  if (b.size() == 0 || scale == 0.0) return 0.0;
+  return (b - multiply(matrix, x)).norm() / scale;
+}
+
 }  // namespace pfv

@@ -43,4 +43,8 @@ std::unique_ptr<LinearSolver> make_solver(const Options& options,
 /// The same with the other options as they are by default.
 std::unique_ptr<LinearSolver> make_solver(SolverKind solver, OrderingKind ordering);
 
+/// |b - A x| / |b|; 0 where there is nothing to solve.
+double relative_residual(const SymmetricMatrix& matrix, const Eigen::VectorXd& x,
+                         const Eigen::VectorXd& b);
+
 }  // namespace pfv

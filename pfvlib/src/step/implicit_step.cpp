@@ -2,7 +2,7 @@
 #include "step/implicit_step.hpp"
 
 #include "pfv/error.hpp"
-#include "results/balance_terms.hpp"
+#include "solve/linear_solver.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
 #include "step/pressure_solve.hpp"

@@ -2,7 +2,7 @@
 #include "step/sheared_implicit.hpp"
 
 #include "pfv/error.hpp"
-#include "results/balance_terms.hpp"
+#include "solve/linear_solver.hpp"
 #include "step/continuity.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
