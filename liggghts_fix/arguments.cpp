@@ -165,6 +165,7 @@ void parse_container(Words& words, PfvSettings& settings) {
   settings.container = true;
   settings.sources.clear();
   if (words.take("walls")) settings.all_walls = take_wall(words).value_or(pfv::Wall::no_slip);
+  settings.flats = words.take("flats");
 }
 
 void parse_patch(Words& words, PfvSettings& settings) {

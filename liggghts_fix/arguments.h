@@ -66,6 +66,7 @@ struct PfvSettings : pfv::Settings {
   bool container = false;
   /// The walls that the grains touch are faces of the container, with this condition unless they are named.
   std::optional<pfv::Wall> all_walls;
+  bool flats = false;  ///< round meshes stay the flats that they are made of
   std::vector<pfv::ContainerFace> faces;
   std::vector<PfvFaceSource> sources = std::vector<PfvFaceSource>(6);  ///< of the box's faces, or of these
   std::array<std::optional<PfvCosine>, 6> profiles;
@@ -78,7 +79,7 @@ struct PfvSettings : pfv::Settings {
 
 /// The settings of `fix ID group pfv ...`; `arg` holds the words behind the style. Throws
 /// pfv::InputError. `periodic`: axes along which the simulation box is periodic; they have no faces to give. Of a
-/// container the walls have still to be found (`find_walls`).
+/// container the walls have still to be found (`PfvFoundWalls::complete`).
 PfvSettings parse_pfv(int narg, char** arg, const std::array<bool, 3>& periodic);
 
 /// Applies one keyword of `fix_modify ID ...` and returns the number of words it took. Throws

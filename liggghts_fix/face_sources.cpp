@@ -14,11 +14,13 @@
 #include "modify.h"
 #include "tri_mesh.h"
 
+#include <Eigen/Geometry>
 #include <mpi.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -189,6 +191,20 @@ pfv::Surface PfvFaceSources::surface(int number) const {
                                0.5 * (domain->boxlo[2] + domain->boxhi[2]));
   const double outwards = outwards_[number] != 0.0 ? outwards_[number] : surface.distance(middle);
   return surface.is_plane() && outwards < 0.0 ? turned(surface) : surface;
+}
+
+std::vector<double> PfvFaceSources::mesh_areas() const {
+  std::vector<double> areas(count(), 0.0);
+  for (int number = 0; number < count(); ++number) {
+    if (!meshes_[number]) continue;
+    const std::vector<pfv::Triangle> triangles = triangles_of(meshes_[number], world);
+    std::vector<int> chosen(triangles.size());
+    std::iota(chosen.begin(), chosen.end(), 0);
+    if (container_ && sources_[number].part >= 0) chosen = parts_[number].triangles;
+    for (const int t : chosen)
+      areas[number] += 0.5 * (triangles[t].col(1) - triangles[t].col(0)).cross(triangles[t].col(2) - triangles[t].col(0)).norm();
+  }
+  return areas;
 }
 
 std::string PfvFaceSources::described(int number) const {

@@ -46,6 +46,8 @@ class PfvFaceSources : protected Pointers {
   /// Of a container's face: how it moves, and its shape with the fluid inside; the latter after `follow_grains`.
   void set_motion(int number, pfv::ContainerFace& face) const;
   pfv::Surface surface(int number) const;
+  /// Area of the mesh that each face follows, m²; 0 for others. Collective.
+  std::vector<double> mesh_areas() const;
   /// A container's face in words: its name, source, shape, and how far a mesh strays from it.
   std::string described(int number) const;
   /// A box's face with its motion in its own plane, which a mesh's nodes have as parts of one rigid body.

@@ -33,7 +33,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   check_environment();
   everywhere([&] {
     settings_ = parse_pfv(narg - 3, arg + 3, cell_.axes());
-    left_out_ = PfvFoundWalls(lmp).complete(settings_);
+    left_out_ = PfvFoundWalls(lmp, groupbit).complete(settings_);
   });
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
 
@@ -232,6 +232,8 @@ void FixPfv::begin_anew_where_moved() {
   if (!moved) return;
   bodies_.forget();
   since_.cell_rates = {};
+  for (int f = 0; f < container_.face_count(); ++f)
+    if (container_.is_box && container_.periodic[f / 2]) container_.faces[f].velocity.setZero();
   read_host();
   since_.steps = 0;
   since_.time = 0.0;
@@ -282,10 +284,14 @@ void FixPfv::setup(int) {
   begin_anew_where_moved();
   container_ = current_container();
   // fix deform changes the cell after the last flow step of a run: that is part of the next run's first interval
-  const bool goes_on = since_.steps > 0 || (cell_.any() && !since_.face_positions.empty());
+  // (but a cell that has been changed by hand since a restart file was read begins anew)
+  const bool by_hand = continued_ && !cell_.changes() && since_.steps == 0;
+  const bool goes_on = !by_hand && (since_.steps > 0 || (cell_.any() && !since_.face_positions.empty()));
+  continued_ = false;
   if (!goes_on) since_.face_positions = faces_.positions();
   if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
-  const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, settings_);
+  const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, groupbit, settings_);
+  const std::vector<double> mesh_areas = faces_.mesh_areas();
   on_root([&] {
     place_faces(container_);
     warn_of_empty_box();
@@ -293,6 +299,7 @@ void FixPfv::setup(int) {
     prepare_flow(container_);
     check_servos();
     call_flow(flow_step(), false);
+    warn_of_gaps(mesh_areas);
     say_what_holds_the_fluid();
     say_what_is_filled();
     if (!goes_on || since_.grains.tags.empty()) since_.grains = grains_.snapshot();
@@ -428,6 +435,7 @@ void FixPfv::write_restart(FILE* file) {
 void FixPfv::restart(char* bytes) {
   everywhere([&] {
     PfvRestartRecord record = unpack(bytes);
+    continued_ = true;
     since_.steps = record.steps_since_flow;
     since_.time = record.elapsed;
     since_.face_positions = record.last_positions;

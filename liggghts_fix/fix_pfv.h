@@ -87,6 +87,7 @@ class FixPfv : public Fix {
   void remember_state();
   void warn_of_empty_box() const;
   void warn_of(const std::string& problem) const;
+  void warn_of_gaps(const std::vector<double>& mesh_areas) const;
   void say_what_holds_the_fluid();
   void say_what_is_filled();
   Eigen::Vector3d gravity() const;
@@ -144,6 +145,7 @@ class FixPfv : public Fix {
   struct Taken {
     std::int64_t steps = 0, solves = 0;  // of all runs
   } taken_;
+  bool continued_ = false;  // from a restart file, and no run since
   pfv::NextSolve next_;  // of `couple_every auto`
 
   // rank 0 only

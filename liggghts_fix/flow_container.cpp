@@ -141,6 +141,21 @@ void FixPfv::warn_of(const std::string& problem) const {
   error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + problem).c_str());
 }
 
+/// A face goes on where its mesh ends: a gate, a plate with an opening. Rank 0.
+void FixPfv::warn_of_gaps(const std::vector<double>& mesh_areas) const {
+  if (!settings_.container) return;
+  constexpr double whole = 0.95;
+  const std::vector<double> areas = pfv::face_areas(container_);
+  for (std::size_t number = 0; number < areas.size(); ++number) {
+    if (mesh_areas[number] == 0.0 || mesh_areas[number] >= whole * areas[number]) continue;
+    std::ostringstream text;
+    text.precision(3);
+    text << "the mesh of face " << container_.faces[number].name << " covers " << 100.0 * mesh_areas[number] / areas[number]
+         << " % of it; the fluid's face has no opening there, and grains that pass it are left out";
+    warn_of(text.str());
+  }
+}
+
 /// What became of each wall: a line for the faces of a container, one for each wall that is none. Rank 0.
 void FixPfv::say_what_holds_the_fluid() {
   if (!settings_.container) return;

@@ -127,6 +127,7 @@ Fix* PfvFoundWalls::fix_named(const std::string& id) const {
 Eigen::Vector3d PfvFoundWalls::middle_of_grains() const {
   std::array<double, 4> sums{};
   for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit_)) continue;
     sums[3] += 1.0;
     for (int k = 0; k < 3; ++k) sums[k] += atom->x[i][k];
   }
@@ -140,6 +141,7 @@ Eigen::Vector3d PfvFoundWalls::middle_of_grains() const {
 std::pair<long, long> PfvFoundWalls::grains_on_both_sides(const std::vector<pfv::Surface>& surfaces) const {
   std::array<long, 2> counts{};
   for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit_)) continue;
     const Eigen::Vector3d x(atom->x[i][0], atom->x[i][1], atom->x[i][2]);
     const bool within = std::all_of(surfaces.begin(), surfaces.end(),
                                     [&](const pfv::Surface& surface) { return surface.distance(x) > 0.0; });
@@ -177,7 +179,10 @@ void PfvFoundWalls::add_walls(PfvSettings& settings, std::vector<std::string>& l
     }
     const PfvFaceSource source = source_of(wall);
     if (named != settings.faces.end()) {
-      settings.sources[static_cast<std::size_t>(named - settings.faces.begin())] = source;
+      PfvFaceSource& own = settings.sources[static_cast<std::size_t>(named - settings.faces.begin())];
+      if (own.kind == Source::none) own = source;
+      else left_out.push_back((wall.mesh ? "mesh '" : "wall '") + wall.id +
+                              "' is no face, since the face of that name has a place of its own");
       continue;
     }
     pfv::ContainerFace face;
@@ -197,7 +202,7 @@ void PfvFoundWalls::add_walls(PfvSettings& settings, std::vector<std::string>& l
 double PfvFoundWalls::extreme_of_grains(int axis, bool upper) const {
   double furthest = -std::numeric_limits<double>::max();
   for (int i = 0; i < atom->nlocal; ++i)
-    furthest = std::max(furthest, (upper ? atom->x[i][axis] : -atom->x[i][axis]) + atom->radius[i]);
+    if (atom->mask[i] & groupbit_) furthest = std::max(furthest, (upper ? atom->x[i][axis] : -atom->x[i][axis]) + atom->radius[i]);
   MPI_Allreduce(MPI_IN_PLACE, &furthest, 1, MPI_DOUBLE, MPI_MAX, world);
   if (furthest > -std::numeric_limits<double>::max()) return furthest;
   return upper ? domain->boxhi[axis] : -domain->boxlo[axis];
@@ -247,7 +252,7 @@ void PfvFoundWalls::drop_walls_that_bound_nothing(PfvSettings& settings, std::ve
       return surfaces[f].size() == 1 && other.size() == 1 && same_plane(surfaces[f][0], other[0]);
     });
     if (!doubled && (!with || !without || std::abs(*without - *with) > same * *with)) continue;
-    left_out.push_back("wall '" + settings.faces[f].name + "' bounds nothing, since others keep the fluid from it");
+    left_out.push_back((settings.sources[f].kind == Source::mesh ? "mesh '" : "wall '") + settings.faces[f].name + "' bounds nothing, since others keep the fluid from it");
     settings.faces.erase(settings.faces.begin() + static_cast<std::ptrdiff_t>(f));
     settings.sources.erase(settings.sources.begin() + static_cast<std::ptrdiff_t>(f));
     surfaces = std::move(others);
@@ -271,7 +276,8 @@ std::vector<std::string> PfvFoundWalls::complete(PfvSettings& settings) const {
   if (!settings.container) return left_out;
   const std::size_t named = settings.faces.size();
   if (settings.all_walls) add_walls(settings, left_out);
-  std::vector<Surfaces> surfaces = surfaces_of_faces(settings, pfv::RoundMeshes::as_cylinders);
+  const auto round = settings.flats ? pfv::RoundMeshes::as_flats : pfv::RoundMeshes::as_cylinders;
+  std::vector<Surfaces> surfaces = surfaces_of_faces(settings, round);
   if (settings.all_walls) drop_walls_that_bound_nothing(settings, surfaces, named, left_out);
   if (!cylinders_fit(surfaces)) surfaces = surfaces_of_faces(settings, pfv::RoundMeshes::as_flats);
   split_meshes(settings, surfaces);

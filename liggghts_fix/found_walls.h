@@ -22,7 +22,8 @@ struct PfvWall {
 
 class PfvFoundWalls : protected Pointers {
  public:
-  explicit PfvFoundWalls(class LAMMPS* lmp) : Pointers(lmp) {}
+  /// `groupbit`: of the flow's grains.
+  PfvFoundWalls(class LAMMPS* lmp, int groupbit) : Pointers(lmp), groupbit_(groupbit) {}
 
   /// The primitive walls and the meshes of all fixes wall/gran, in their order.
   std::vector<PfvWall> walls() const;
@@ -46,6 +47,8 @@ class PfvFoundWalls : protected Pointers {
   Eigen::Vector3d middle_of_grains() const;
   double extreme_of_grains(int axis, bool upper) const;
   class Fix* fix_named(const std::string& id) const;
+
+  int groupbit_;
 };
 
 }  // namespace LAMMPS_NS

@@ -73,8 +73,9 @@ PfvRestartRecord unpack(const char* bytes) {
   const double found = reader.next();
   if (found != format_number && found != with_cell_rates)
     throw pfv::InputError("the restart file holds this fix in form " +
-                          std::to_string(static_cast<int>(found)) + " of an older version, this one reads "
-                          "form " + std::to_string(static_cast<int>(format_number)) +
+                          std::to_string(static_cast<int>(found)) + " of another version, this one reads the "
+                          "forms " + std::to_string(static_cast<int>(format_number)) + " and " +
+                          std::to_string(static_cast<int>(with_cell_rates)) +
                           "; give the fix another ID to start the flow anew");
   PfvRestartRecord record;
   record.step = static_cast<std::int64_t>(reader.next());

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace LAMMPS_NS {
@@ -66,15 +67,18 @@ Deepest deepest_in(const pfv::Container& container, const std::vector<pfv::Trian
   return deepest;
 }
 
-std::string remedy(bool box) {
-  return box ? "; take `container walls`, or a `container` with a face for this wall" : "; give it a face, if it bounds the fluid";
+std::string remedy(const pfv::Container& container) {
+  if (container.any_periodic()) return "; a periodic cell has plane walls normal to its other axes alone";
+  return container.is_box ? "; take `container walls`, or a `container` with a face for this wall, if it bounds the fluid; a body "
+               "among the grains can be made of frozen spheres"
+             : "; a body among the grains can be made of frozen spheres";
 }
 
 }  // namespace
 
-std::vector<PfvUnseenWall> walls_beside_the_faces(LAMMPS* lmp, const PfvSettings& settings) {
+std::vector<PfvUnseenWall> walls_beside_the_faces(LAMMPS* lmp, int groupbit, const PfvSettings& settings) {
   std::vector<PfvUnseenWall> unseen;
-  for (const PfvWall& wall : PfvFoundWalls(lmp).walls()) {
+  for (const PfvWall& wall : PfvFoundWalls(lmp, groupbit).walls()) {
     const bool seen = std::any_of(settings.sources.begin(), settings.sources.end(),
                                   [&](const PfvFaceSource& source) { return source.fix_id == wall.id; });
     if (seen) continue;
@@ -96,13 +100,13 @@ std::vector<std::string> warnings_of_unseen_walls(const std::vector<PfvUnseenWal
       const double part = part_beyond(wall.surface[0], container, packing);
       if (part < noticed) continue;
       text << "wall '" << wall.id << "' cuts off " << 100.0 * part << " % of what is taken as the fluid's room, where no grain "
-           << "can be and water flows without resistance" << remedy(container.is_box);
+           << "can be and water flows without resistance" << remedy(container);
     } else {
       const Deepest deepest = deepest_in(container, wall.triangles);
       if (deepest.depth <= touching * packing.radii.mean()) continue;
       text << "mesh '" << wall.id << "' stands in the fluid, which does not see it: it reaches " << deepest.depth
            << " m into it at (" << deepest.place.transpose() << "); water flows through it, and it displaces none"
-           << remedy(container.is_box);
+           << remedy(container);
     }
     warnings.push_back(text.str());
   }

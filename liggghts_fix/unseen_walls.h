@@ -22,7 +22,7 @@ struct PfvUnseenWall {
 };
 
 /// The walls of the script that are no faces. Collective; the same on all ranks.
-std::vector<PfvUnseenWall> walls_beside_the_faces(class LAMMPS* lmp, const PfvSettings& settings);
+std::vector<PfvUnseenWall> walls_beside_the_faces(class LAMMPS* lmp, int groupbit, const PfvSettings& settings);
 
 /// A warning for each wall that takes room from the fluid in the container, which the fluid does not know: by a part of
 /// its volume, or a mesh by how deep it reaches into it. `packing`: the grains, which are on the fluid's side of a

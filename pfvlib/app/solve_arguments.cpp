@@ -126,6 +126,8 @@ double length_unit_of(const std::string& text) {
   return positive("--length-unit", text);
 }
 
+bool box_is_auto(const SolveArguments& arguments) { return arguments.box == std::vector<std::string>{"auto"}; }
+
 bool periodic_as_dump(const SolveArguments& arguments) {
   return arguments.periodic == std::vector<std::string>{"dump"};
 }
@@ -162,7 +164,7 @@ void apply_dump(const SolveArguments& arguments, Box& box) {
     }
     const double length = dumped->upper[axis] - dumped->lower[axis];
     const auto differ = [&](double a, double b) { return !(std::abs(a - b) <= 1e-9 * length); };
-    if (!arguments.box.empty() &&
+    if (!arguments.box.empty() && !box_is_auto(arguments) &&
         (differ(box.lower[axis], dumped->lower[axis]) || differ(box.upper[axis], dumped->upper[axis])))
       throw InputError("--box: along " + name + ", which is periodic in the dump, its bounds are " +
                        detail::number_text(dumped->lower[axis]) + " " + detail::number_text(dumped->upper[axis]) +
@@ -177,7 +179,7 @@ void apply_dump(const SolveArguments& arguments, Box& box) {
 void apply_periodic(const SolveArguments& arguments, Box& box) {
   const bool of_dump = periodic_as_dump(arguments);
   if (of_dump) apply_dump(arguments, box);
-  if (of_dump && !arguments.tilt.empty()) throw InputError("--tilt: --periodic dump has that of the dump: leave it away");
+  if (of_dump && !arguments.tilt.empty()) throw InputError("--tilt: the cell is that of the dump, with its tilt: leave it away");
   for (std::size_t k = 0; k < arguments.tilt.size(); ++k)
     box.tilt[static_cast<Eigen::Index>(k)] = number("--tilt", arguments.tilt[k]);
   for (const std::string& axis : of_dump ? std::vector<std::string>{} : arguments.periodic) {
@@ -186,13 +188,13 @@ void apply_periodic(const SolveArguments& arguments, Box& box) {
                        ": give some of x, y, z, with commas between them, or dump alone");
     bool& periodic = box.periodic[axis[0] - 'x'];
     if (periodic) throw InputError("--periodic: axis " + axis + " occurs twice");
+    if (box_is_auto(arguments))
+      throw InputError("--periodic: the extent of the spheres is no period: give the cell with --box");
     periodic = true;
   }
   for (std::size_t axis = 0; axis < arguments.gradient.size(); ++axis)
     box.pressure_gradient[static_cast<int>(axis)] = number("--gradient", arguments.gradient[axis]);
 }
-
-bool box_is_auto(const SolveArguments& arguments) { return arguments.box == std::vector<std::string>{"auto"}; }
 
 void apply_extent_of_spheres(const SolveArguments& arguments, Box& box) {
   const PackingArrays packing = look_into_packing(arguments, "--box auto").packing;

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files of spheres that other programs write give the flow of the same spheres as a table."""
 import gzip
+import os
+import subprocess
 import unittest
 
 import numpy
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
-from command import DENSE, THROUGH_FLOW, CommandTest, dense_rows
+from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest, dense_rows
 
 
 def grains():
@@ -65,6 +67,16 @@ class Formats(CommandTest):
         (self.folder / "grains.csv.gz").write_bytes(gzip.compress(DENSE.read_bytes()))
         self.assertEqual(self.forces_of("grains.csv.gz"), self.table)
 
+    def test_a_pipe(self):
+        result = self.run_pfv("solve", "--packing", "/dev/stdin", *UNIT_BOX, *THROUGH_FLOW, "--forces", "forces.csv",
+                              stdin=open(DENSE))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        piped = subprocess.run(f"cat {DENSE} | {os.environ['PFV_COMMAND']} solve --packing /dev/stdin {' '.join(UNIT_BOX)} "
+                               f"{' '.join(THROUGH_FLOW)} --forces piped.csv", shell=True, cwd=self.folder)
+        self.assertEqual(piped.returncode, 0)
+        self.assertEqual(self.read("forces.csv"), self.table)
+        self.assertEqual(self.read("piped.csv"), self.table)
+
     def dump(self, steps, scale=1.0):
         ids, values = grains()
         text = ""
@@ -108,6 +120,9 @@ class Formats(CommandTest):
         self.assertIn("the flow box was taken from it: 0 1 0 1 0 1, periodic", said.stderr)
         self.solve("--report", "named.json", "--viscosity", "1", "--periodic", "x,y,z", packing=cell)
         self.assertEqual(self.json("cell.json")["permeability_tensor"], self.json("named.json")["permeability_tensor"])
+        refused = self.run_pfv("solve", "--packing", "grains.dump", "--box", "auto", "--periodic", "x")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("is no period", refused.stderr)
         refused = self.run_pfv("solve", "--packing", "grains.dump", "--viscosity", "1")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("--box or --container is required", refused.stderr)

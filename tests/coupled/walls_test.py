@@ -161,6 +161,30 @@ class Walls(CoupledTest):
                                  "run 0\n")
             self.assertEqual("not mm" in said, bool(name))
 
+    def test_a_place_of_its_own_and_the_group_come_first(self):
+        sides = "".join(f"fix w{a}{k} all {MODEL} primitive type 1 {a}plane {k * EDGE}\n" for a in "xy" for k in (0, 1))
+        lower = f"face roof plane 0 0 {0.9 * EDGE} 0 0 -1 pressure 0"
+        said = self.liggghts(HEAD + sides + ENDS + self.flow(lower) + "run 0\n")
+        self.assertIn(f"container of {0.9 * EDGE**3:.4g} m3", said)
+        self.assertIn("left out: wall 'roof' is no face, since the face of that name has a place of its own", said)
+        wet = (f"region below block INF INF INF INF INF {0.55 * EDGE}\ngroup wet region below\n"
+               f"fix middle all {MODEL} primitive type 1 zplane {0.6 * EDGE}\n")
+        flow = self.flow("face middle pressure 0").replace("flow all", "flow wet")
+        said = self.liggghts(HEAD + sides + wet + ENDS + flow + "run 0\n")
+        self.assertIn(f"container of {0.6 * EDGE**3:.4g} m3", said)
+
+    def test_flats_on_request_and_a_gate_that_covers_a_part(self):
+        write_data(self.folder, within(packing(8), 0.97 * RADIUS))
+        write_mesh(self.folder / "tube.stl", funnel(ring(32, RADIUS, -0.01, MIDDLE), ring(32, RADIUS, EDGE + 0.01, MIDDLE)))
+        said = self.liggghts(HEAD + mesh("tube") + ENDS + self.flow(PRESSURES, "walls flats") + "run 0\n")
+        self.assertIn("held by 34 walls", said)
+        self.assertNotIn("covers", said)
+        write_data(self.folder, packing())
+        write_mesh(self.folder / "gate.stl", quad((EDGE, 0, 0), (EDGE, EDGE, 0), (EDGE, EDGE, EDGE / 2), (EDGE, 0, EDGE / 2)))
+        sides = "".join(f"fix w{a} all {MODEL} primitive type 1 {a[0]}plane {w}\n" for a, w in (("x0", 0), ("y0", 0), ("y1", EDGE)))
+        said = self.liggghts(HEAD + sides + ENDS + mesh("gate") + self.flow(PRESSURES) + "run 0\n")
+        self.assertRegex(said, r"WARNING.*the mesh of face gate covers 50 % of it")
+
     def test_what_cannot_be_walls_is_refused(self):
         bent = quad((0, 0, 0), (0.05, 0, 0.02), (0.05, 0.1, 0.02), (0, 0.1, 0)) + quad(
             (0.05, 0, 0.02), (0.1, 0, 0), (0.1, 0.1, 0), (0.05, 0.1, 0.02)) + quad(

@@ -119,6 +119,11 @@ TEST(MeshWalls, AMeshThatIsNotConvexIsRefusedWithTheTriangle) {
         << error.what();
   }
   EXPECT_THROW(walls_of({}), pfv::InputError);
+  std::vector<Triangle> ball;  // many planes
+  for (int i = 1; i < 60; ++i)
+    for (const Triangle& triangle : funnel(80, std::sin(pi * i / 60), std::sin(pi * (i + 1) / 60), 0.05, Eigen::Isometry3d::Identity()))
+      ball.push_back(triangle.array() + 0.001 * i * i);
+  EXPECT_THROW(walls_of(ball), pfv::InputError);
   EXPECT_THROW(walls_of({Triangle::Zero()}), pfv::InputError);
 }
 

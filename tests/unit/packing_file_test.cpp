@@ -190,6 +190,12 @@ TEST_F(PackingFiles, PointsOfVtkFiles) {
   expect_two(old);
   EXPECT_EQ(old.packing.velocities.col(1), Eigen::Vector3d(4.0, 5.0, 6.0));
   expect_two(pfv::read_packing_file(file(vtu)));
+  std::string lines;  // as other systems end them, and an empty piece first, as parallel writers have it
+  for (const char c : vtu) lines += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  expect_two(pfv::read_packing_file(file(lines)));
+  std::string pieces = vtu;
+  pieces.insert(pieces.find("<Piece"), "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"></Piece>\n");
+  expect_two(pfv::read_packing_file(file(pieces)));
 }
 
 TEST_F(PackingFiles, PackedWithGzip) {
@@ -273,6 +279,19 @@ TEST_F(PackingFiles, WhatIsNotReadIsRefusedWithItsCause) {
       {data_file.substr(0, data_file.rfind("\n7 1") + 1), "cut off after 1 of 2 atoms"},
       {data_file.substr(0, data_file.size() - 2), ":13: has 9 fields"},
       {"title\n\n2 atoms\n\nMasses\n\n1 1\n", "no section Atoms"},
+      {"id,x [m],y [m],z [m],radius [m],vx [mm/s],vy [mm/s],vz [mm/s]\n7,1,2,3,4,5,6,7\n", "'vx [mm/s]' is not in m"},
+      {dump("id type x y z radius ", plain, "xy xz yz pp pp pp", "0 1 zzz\n0 1 0\n0 1 0\n"), "the tilt is 'zzz'"},
+      {dump("id type x y z radius ", plain, "abc origin pp pp pp", "1 0 0 0\n0 1 0 0\n0 0 1 0\n"), "general triclinic"},
+      {[] { std::string s = vtu; s.replace(s.find("7 9"), 3, "7 1e300"); return s; }(), "the id of point 2 is no whole number"},
+      {[] { std::string s = vtu; s.replace(s.find("0.1\n0.2<"), 7, "0.1"); return s; }(), "its field diameter has 1 values for 2 points"},
+      {"<VTKFile>" + [] { std::string s; for (int k = 0; k < 60000; ++k) s += "<a>"; return s; }(), "nested too deeply"},
+      {[] {  // two packed blocks whose sizes add up to a small one
+         std::string s = vtu;
+         s.replace(s.find("LittleEndian\""), 13, "LittleEndian\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\"");
+         s.replace(s.find("\"ascii\">0.1\n0.2"), 15, "\"binary\">AgAAAAAAAAAQAAAAAAAAAAAAAAAAAAAAAAAAAAAAAIAIAAAAAAAAgA==AAAAAAAAAAA=");
+         return s;
+       }(),
+       "cut off or garbled"},
       {"", "is empty"},
       {"# only a comment\n", "is empty"}};
   for (const Refused& one : all) {
@@ -292,6 +311,9 @@ TEST_F(PackingFiles, WhatIsNotReadIsRefusedWithItsCause) {
     EXPECT_NE(std::string(error.what()).find("is no dump"), std::string::npos);
   }
   EXPECT_EQ(pfv::read_packing_file(file(named_mm), {"last", 1e-3}).packing.radii[0], 4e-3);
+  EXPECT_THROW(pfv::read_packing_file(file("id,x [mm],y [mm],z [mm],radius [mm],vx [m/s],vy [m/s],vz [m/s]\n7,1,2,3,4,5,6,7\n"),
+                                      {"last", 1e-3}),
+               pfv::InputError);
 }
 
 }  // namespace

@@ -102,6 +102,8 @@ std::optional<PackingBounds> read_bounds(TextLines& lines) {
   Words words, fields;
   split_words(lines.line(), words);
   PackingBounds bounds;
+  if (words.size() > 3 && words[3] == "abc")
+    lines.fail("the bounds are those of a general triclinic cell: write the dump with triclinic/general no");
   if (words.size() >= 6)
     for (int axis = 0; axis < 3; ++axis) bounds.periodic[axis] = words[words.size() - 3 + axis] == "pp";
   for (int axis = 0; axis < 3; ++axis) {
@@ -112,7 +114,9 @@ std::optional<PackingBounds> read_bounds(TextLines& lines) {
     if (!lower || !upper) lines.fail("bounds are " + detail::quoted(lines.line()) + ": give two numbers");
     bounds.lower[axis] = *lower;
     bounds.upper[axis] = *upper;
-    if (fields.size() > 2) bounds.tilt[axis] = finite_number(fields[2]).value_or(0.0);
+    const auto tilt = fields.size() > 2 ? finite_number(fields[2]) : 0.0;
+    if (!tilt) lines.fail("the tilt is " + detail::quoted(fields[2]) + ": give a number");
+    bounds.tilt[axis] = *tilt;
   }
   if (bounds.tilt.isZero(0.0)) return bounds;
   if (!bounds.any_periodic()) return {};

@@ -9,9 +9,7 @@
 
 #include <zlib.h>
 
-#include <cctype>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 
@@ -20,12 +18,8 @@ namespace detail {
 
 std::string whole_file(const std::string& path) {
   const auto fail = [&](const std::string& why) {
-    throw InputError("cannot read packing " + detail::quoted(path) + ": " + why + ": give a CSV file or a LIGGGHTS dump");
+    throw InputError("cannot read packing " + detail::quoted(path) + ": " + why + ": give a table, a LIGGGHTS dump or data file, or points of a VTK file");
   };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!opened) fail(std::strerror(errno));
-  std::fgetc(opened.get());
-  if (std::ferror(opened.get())) fail(std::strerror(errno));  // a folder
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), &gzclose);
   if (!file) fail(std::strerror(errno));
   std::string text;
@@ -36,6 +30,7 @@ std::string whole_file(const std::string& path) {
     got = gzread(file.get(), &text[used], room);
     int problem = Z_OK;
     const std::string why = gzerror(file.get(), &problem);
+    if (problem == Z_ERRNO) fail(std::strerror(errno));  // a folder, for one
     if (got < 0 || problem == Z_BUF_ERROR)
       fail(problem == Z_BUF_ERROR ? "the packed file is cut off" : "it cannot be unpacked (" + why + ")");
   }

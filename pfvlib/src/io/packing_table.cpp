@@ -60,11 +60,15 @@ Words names_in_comment(std::string_view comment) {
   return header ? names : Words();
 }
 
-void refuse_units(const TextLines& lines, const Words& names) {
+/// Units of lengths and velocities in names, which `--length-unit` has to agree with.
+void refuse_units(const TextLines& lines, const Words& names, bool lengths_have_a_unit) {
   for (const std::string_view name : names) {
-    const std::string_view unit = unit_in(name);
+    const std::string_view unit = unit_in(name), length = unit.substr(0, unit.find('/'));
+    if (lengths_have_a_unit && (unit == "m" || unit == "m/s"))
+      lines.fail("column " + detail::quoted(name) + " is in m, and --length-unit names another unit for all of them");
+    if (lengths_have_a_unit) continue;
     for (const std::string_view other : {"mm", "cm", "um", "nm", "km", "in", "ft", "inch"})
-      if (unit == other)
+      if (length == other)
         lines.fail("column " + detail::quoted(name) + " is not in m: give the file's unit with --length-unit");
   }
 }
@@ -95,7 +99,7 @@ PackingFile read_table(const std::string& path, std::string_view text, bool leng
     file.remarks.push_back("there are no names of columns: the four were taken as x, y, z and radius");
   }
   if (numbers && names.empty()) fail_without_header(lines, fields.size());
-  if (!lengths_have_a_unit) refuse_units(lines, numbers ? names : fields);
+  refuse_units(lines, numbers ? names : fields, lengths_have_a_unit);
   SphereTable table(find_columns(lines, numbers ? names : fields));
   table.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
   if (numbers) table.add(lines, fields);

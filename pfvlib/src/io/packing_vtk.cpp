@@ -58,7 +58,10 @@ PackingFile spheres_of(const std::string& path, const Points& points) {
   if (!sizes || sizes->values.size() != points.count) {
     std::string names;
     for (const Field& field : points.fields) names += (names.empty() ? "" : ", ") + field.name;
-    throw InputError(path + ": its points have no radius or diameter; there are " + (names.empty() ? "no fields" : names) +
+    throw InputError(path + (sizes ? ": its field " + sizes->name + " has " + std::to_string(sizes->values.size()) +
+                                         " values for " + std::to_string(points.count) + " points"
+                                   : ": its points have no radius or diameter; there are " +
+                                         (names.empty() ? std::string("no fields") : names)) +
                      ": give spheres, not a mesh or another result");
   }
   const auto n = static_cast<Eigen::Index>(points.count);
@@ -71,6 +74,10 @@ PackingFile spheres_of(const std::string& path, const Points& points) {
   packing.ids.resize(n);
   const Field* ids = field_named(points, {"id", "ids", "tag"});
   if (ids && ids->values.size() != points.count) ids = nullptr;
+  constexpr double largest_id = 9e15;  // that a double holds as a whole number
+  for (Eigen::Index k = 0; ids && k < n; ++k)
+    if (!(std::abs(ids->values[k]) < largest_id) || ids->values[k] != std::floor(ids->values[k]))
+      throw InputError(path + ": the id of point " + std::to_string(k + 1) + " is no whole number");
   for (Eigen::Index k = 0; k < n; ++k) packing.ids[k] = ids ? std::llround(ids->values[k]) : k + 1;
   if (!ids) file.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
   require_finite(path, packing);
@@ -215,6 +222,7 @@ class XmlArrays {
   }
 
   std::string bytes_of(std::string_view stored, std::size_t from, std::size_t count, bool raw) const {
+    if (from > stored.size() || count > stored.size() - from) fail();
     if (raw) {
       if (from + count > stored.size()) fail();
       return std::string(stored.substr(from, count));
@@ -241,7 +249,11 @@ class XmlArrays {
     // base64 pads the header on its own
     const std::string_view rest = stored.substr(std::min(stored.size(), raw ? head : (head + 2) / 3 * 4));
     std::size_t all = 0;
-    for (std::size_t b = 0; b < blocks; ++b) all += header(sizes, 3 + b);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const std::size_t one = header(sizes, 3 + b);
+      if (one > stored.size() - all) fail();
+      all += one;
+    }
     const std::string packed = bytes_of(rest, 0, all, raw);
     std::string result;
     std::size_t from = 0;
@@ -261,7 +273,7 @@ class XmlArrays {
   std::vector<double> numbers(const std::string& text) const {
     Words words;
     std::string flat = text;
-    std::replace(flat.begin(), flat.end(), '\n', ' ');
+    std::replace_if(flat.begin(), flat.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     split_words(flat, words);
     std::vector<double> values;
     for (const std::string_view one : words) {
@@ -316,9 +328,21 @@ Appended appended_of(std::string_view text) {
   return appended;
 }
 
+/// The reader of XML calls itself once a level.
+void refuse_deep_nesting(const std::string& path, std::string_view xml) {
+  constexpr int deepest = 64;
+  int depth = 0;
+  for (std::size_t k = 0; k + 1 < xml.size(); ++k) {
+    if (xml[k] == '<' && xml[k + 1] != '?' && xml[k + 1] != '!') depth += xml[k + 1] == '/' ? -1 : 1;
+    if (xml[k] == '/' && xml[k + 1] == '>') --depth;
+    if (depth > deepest) throw InputError(path + ": is no file of points: its elements are nested too deeply");
+  }
+}
+
 Tree tree_of(const std::string& path, std::string_view text, const Appended& appended) {
   std::string xml(text.substr(0, appended.begin));
   if (appended.begin != std::string_view::npos) xml += "</VTKFile>";
+  refuse_deep_nesting(path, xml);
   std::istringstream stream(xml);
   Tree tree;
   try {
@@ -367,8 +391,10 @@ PackingFile read_pieces(const std::string& path, std::string_view text) {
   Points points;
   for (const auto& [name, piece] : file.get_child(type)) {
     if (name != "Piece") continue;
+    const auto count = piece.get<std::size_t>("<xmlattr>.NumberOfPoints", 0);
+    if (count == 0) continue;
     if (points.count > 0) throw InputError(path + ": has several pieces: join them to one");
-    points.count = piece.get<std::size_t>("<xmlattr>.NumberOfPoints", 0);
+    points.count = count;
     points.places = arrays.values(piece.get_child("Points.DataArray"));
     if (points.places.size() != 3 * points.count)
       throw InputError(path + ": names " + std::to_string(points.count) + " points and holds " +

@@ -22,6 +22,7 @@ using Triangles = std::vector<Triangle>;
 
 constexpr double planarity = 1e-6;    // strays from a plane, as parts of the mesh's size
 constexpr double squareness = 1e-4;   // cosines of directions that are taken as square to each other
+constexpr std::size_t most_planes = 4096;  // of a mesh: finding them costs planes times triangles
 constexpr int fewest_flats = 16;      // around an axis: they lie within 2 % of the radius from its cylinder
 constexpr double roundness = 0.02;    // strays from a cylinder, as parts of its radius
 constexpr double whole_turn = 0.95;   // part of the way around that a cylinder's triangles cover at least
@@ -99,7 +100,7 @@ void join_coplanar(std::vector<MeshWall>& walls, const Triangles& triangles, con
 }
 
 /// The triangles by the planes that they lie on, the largest first: its plane is the surest.
-std::vector<MeshWall> coplanar_groups(const Triangles& triangles, const Bulk& bulk) {
+std::vector<MeshWall> coplanar_groups(const Triangles& triangles, const Bulk& bulk, const std::string& what) {
   std::vector<int> order(triangles.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -116,6 +117,9 @@ std::vector<MeshWall> coplanar_groups(const Triangles& triangles, const Bulk& bu
     }
     const Vector area = area_of(triangles[t]);
     if (!(area.norm() > planarity * planarity * bulk.size * bulk.size)) continue;  // a needle: it has no plane
+    if (walls.size() == most_planes)
+      throw InputError(what + "has more than " + std::to_string(most_planes) +
+                       " planes: it is curved in more than one direction, or too fine for its shape");
     walls.push_back({Surface::plane(area, triangles[t].col(0)), {t}, 0.0});
   }
   join_coplanar(walls, triangles, bulk);
@@ -278,7 +282,7 @@ void make_round(std::vector<MeshWall>& walls, const Triangles& triangles) {
 std::vector<MeshWall> walls_of_mesh(const Triangles& triangles, RoundMeshes round, const std::string& what) {
   if (triangles.empty()) throw InputError(what + "has no triangles");
   const Bulk bulk = bulk_of(triangles);
-  std::vector<MeshWall> walls = coplanar_groups(triangles, bulk);
+  std::vector<MeshWall> walls = coplanar_groups(triangles, bulk, what);
   if (walls.empty()) throw InputError(what + "has no area");
   require_convex(walls, triangles, bulk, what);
   if (round == RoundMeshes::as_cylinders) make_round(walls, triangles);
