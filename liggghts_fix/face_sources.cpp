@@ -41,10 +41,6 @@ namespace {
 
 using Source = PfvFaceSource::Kind;
 
-/// Nodes of a mesh may stray this much from their plane, as a part of the mesh's size: STL files
-/// carry about seven digits.
-constexpr double planarity = 1e-6;
-
 char axis_name(int number) { return "xyz"[number / 2]; }
 
 /// The same plane with the fluid on its other side.
@@ -298,7 +294,7 @@ void PfvFaceSources::read_mesh(int number) {
   MPI_Allreduce(local.data(), global.data(), 8, MPI_DOUBLE, MPI_MIN, world);
 
   const auto extent = [&](int k) { return -global[3 + k] - global[k]; };
-  if (extent(axis) > planarity * std::max({extent(0), extent(1), extent(2)})) {
+  if (extent(axis) > pfv::planarity * std::max({extent(0), extent(1), extent(2)})) {
     std::ostringstream text;
     text << "mesh '" << sources_[number].fix_id << "' is not a plane normal to the "
          << axis_name(number) << " axis: its nodes reach from " << global[axis] << " to "

@@ -15,11 +15,6 @@
 
 namespace LAMMPS_NS {
 
-namespace {
-/// m; grains in water that are larger are most likely millimetres.
-constexpr double largest_usual_grain = 0.3;
-}  // namespace
-
 /// Evaluates the variables; of one that is missing, check_variables has told.
 void FixPfv::update_bound_numbers() {
   if (settings_.bindings.empty()) return;
@@ -184,7 +179,7 @@ void FixPfv::say_what_is_filled() {
                   static_cast<long>(packing.size() - outside), static_cast<long>(outside),
                   2.0 * packing.radii.minCoeff(), 2.0 * packing.radii.maxCoeff(), 100.0 * solid / volume);
   print("Fix pfv (id " + std::string(id) + "): " + text);
-  if (packing.size() > 0 && 2.0 * packing.radii.mean() > largest_usual_grain)
+  if (packing.size() > 0 && 2.0 * packing.radii.mean() > pfv::largest_usual_diameter)
     warn_of("the mean diameter of the grains is " + std::to_string(2.0 * packing.radii.mean()) +
             " m; lengths are in m, not mm");
 }

@@ -25,10 +25,6 @@ PFV_PRIVATE_MEMBER(PfvPrimitiveParameters, PfvWallParameters, PrimitiveWall, par
 
 namespace {
 
-/// Nodes of a mesh may stray this much from their plane, as a part of the mesh's size: STL files
-/// carry about seven digits.
-constexpr double planarity = 1e-6;
-
 using Vector = Eigen::Vector3d;
 
 Vector vector_of(const double* x) { return {x[0], x[1], x[2]}; }
@@ -154,7 +150,7 @@ pfv::ContainerFace plane_of_mesh(FixMeshSurface* fix, MPI_Comm world, const std:
     furthest = std::max(furthest, std::abs(normal.dot(x - means.place)));
   });
   MPI_Allreduce(MPI_IN_PLACE, &furthest, 1, MPI_DOUBLE, MPI_MAX, world);
-  if (furthest > planarity * std::sqrt(means.spread.trace())) {
+  if (furthest > pfv::planarity * std::sqrt(means.spread.trace())) {
     std::ostringstream text;
     text << what << "is not a plane: its nodes stray from the nearest one by up to " << furthest
          << " m; give each plane part of it as a mesh of its own";

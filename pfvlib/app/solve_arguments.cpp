@@ -48,8 +48,9 @@ int whole_number(const std::string& option, const std::string& text) {
   return static_cast<int>(*number);
 }
 
-void add_flow_options(CLI::App& command, SolveArguments& arguments) {
-  const std::string group = "Flow problem (SI units; a face not named is sealed)";
+namespace {
+
+void add_packing_options(CLI::App& command, SolveArguments& arguments, const std::string& group) {
   command.add_option("--packing", arguments.packing,
                      "spheres (m, m/s): a table with header id,x,y,z,radius[,vx,vy,vz],\n"
                      "a LIGGGHTS dump or data file, points of a .vtk, .vtu or .vtp file;\n"
@@ -75,6 +76,9 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
                      " \"cylinders\": [{\"name\", \"axis\", \"point\", \"radius\"}]}\n"
                      "(default: none)")
       ->option_text("FILE.json")->group(group);
+}
+
+void add_face_options(CLI::App& command, SolveArguments& arguments, const std::string& group) {
   repeatable(command.add_option("--face", arguments.faces,
                      "condition on a face, may be given several times\n"
                                 "NAME  xlo | xhi | ylo | yhi | zlo | zhi, or of the container\n"
@@ -97,6 +101,12 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
   repeatable(command.add_option("--point", arguments.points,
                      "the pore at a place, as --region (default: none)"))
       ->option_text("X,Y,Z:ITEM")->group(group);
+  command.add_option("--wall", arguments.wall,
+                     "wall type of every face without wall= of its own (default no_slip)")
+      ->option_text("no_slip|symmetry")->group(group);
+}
+
+void add_cell_options(CLI::App& command, SolveArguments& arguments, const std::string& group) {
   command.add_option("--periodic", arguments.periodic,
                      "axes along which the packing repeats, or `dump`: those of the\n"
                      "dump's simulation box, with their bounds (--box is needed where\n"
@@ -109,9 +119,15 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
   command.add_option("--gradient", arguments.gradient,
                      "macroscopic pressure gradient along periodic axes, Pa/m (default 0 0 0)")
       ->type_size(3)->expected(1)->option_text("GX GY GZ")->group(group);
-  command.add_option("--wall", arguments.wall,
-                     "wall type of every face without wall= of its own (default no_slip)")
-      ->option_text("no_slip|symmetry")->group(group);
+}
+
+}  // namespace
+
+void add_flow_options(CLI::App& command, SolveArguments& arguments) {
+  const std::string group = "Flow problem (SI units; a face not named is sealed)";
+  add_packing_options(command, arguments, group);
+  add_face_options(command, arguments, group);
+  add_cell_options(command, arguments, group);
 }
 
 namespace {
@@ -132,24 +148,23 @@ bool periodic_as_dump(const SolveArguments& arguments) {
   return arguments.periodic == std::vector<std::string>{"dump"};
 }
 
-/// The packing file for what else it says; what a later reading will find there again.
-PackingFile look_into_packing(const SolveArguments& arguments, const std::string& option) {
-  if (detail::is_stream(arguments.packing))
-    throw InputError(option + ": the packing is read twice: give a file, or numbers");
+PackingFile read_file(const SolveArguments& arguments) {
   return read_packing_file(arguments.packing, {arguments.snapshot, length_unit_of(arguments.length_unit)});
 }
 
-/// Without a box, a container and periodic axes: whether the packing is a dump that is periodic all around.
-bool is_whole_cell(const SolveArguments& arguments) {
-  if (!arguments.box.empty() || arguments.container || !arguments.periodic.empty() || detail::is_stream(arguments.packing))
-    return false;
-  const std::optional<PackingBounds> bounds = look_into_packing(arguments, "--packing").bounds;
-  return bounds && bounds->periodic[0] && bounds->periodic[1] && bounds->periodic[2];
+/// Reads the packing file beforehand where the box may be in it; without a box, a container and periodic axes, a dump that
+/// is periodic all around gives its own.
+void look_for_box(SolveArguments& arguments) {
+  const bool none = arguments.box.empty() && !arguments.container && arguments.periodic.empty();
+  if (!none && !box_is_auto(arguments) && !periodic_as_dump(arguments)) return;
+  arguments.file = std::make_shared<PackingFile>(read_file(arguments));
+  const std::optional<PackingBounds>& bounds = arguments.file->bounds;
+  if (none && bounds && bounds->periodic[0] && bounds->periodic[1] && bounds->periodic[2]) arguments.periodic = {"dump"};
 }
 
 /// Along the periodic axes of the dump its own bounds, which --box must not contradict.
 void apply_dump(const SolveArguments& arguments, Box& box) {
-  const std::optional<PackingBounds> dumped = look_into_packing(arguments, "--periodic dump").bounds;
+  const std::optional<PackingBounds>& dumped = arguments.file->bounds;
   if (!dumped || !dumped->any_periodic())
     throw InputError("--periodic dump: " + detail::quoted(arguments.packing) +
                      " is no dump of a simulation box with periodic sides (BOX BOUNDS pp ...): name the axes");
@@ -197,7 +212,7 @@ void apply_periodic(const SolveArguments& arguments, Box& box) {
 }
 
 void apply_extent_of_spheres(const SolveArguments& arguments, Box& box) {
-  const PackingArrays packing = look_into_packing(arguments, "--box auto").packing;
+  const PackingArrays& packing = arguments.file->packing;
   const Eigen::Matrix3Xd reach = packing.radii.transpose().replicate(3, 1);
   box.lower = (packing.positions - reach).rowwise().minCoeff();
   box.upper = (packing.positions + reach).rowwise().maxCoeff();
@@ -362,11 +377,12 @@ void add_solve_options(CLI::App& command, SolveArguments& arguments) {
 SolveRequest request_of(const SolveArguments& given) {
   SolveArguments arguments = given;
   SolveRequest request;
-  if (is_whole_cell(arguments)) arguments.periodic = {"dump"};
+  look_for_box(arguments);
   request.box_of_file = arguments.box.empty() || box_is_auto(arguments);
   request.packing = arguments.packing;
   request.choice = {arguments.snapshot, length_unit_of(arguments.length_unit)};
   request.at_rest = arguments.at_rest;
+  request.file = arguments.file;
   request.container = container_of(arguments);
   request.settings = settings_of(arguments);
   if (arguments.time_step) request.time_step = positive("--time-step", *arguments.time_step);
@@ -394,7 +410,7 @@ void warn_of_periodic_dump(const SolveRequest& request, const std::optional<Pack
 }  // namespace
 
 PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks) {
-  PackingFile file = read_packing_file(request.packing, request.choice);
+  PackingFile file = request.file ? *request.file : read_packing_file(request.packing, request.choice);
   for (const std::string& remark : file.remarks) remarks << "pfv: " << request.packing << ": " << remark << '\n';
   warn_of_periodic_dump(request, file.bounds, remarks);
   if (request.box_of_file && request.container.is_box) {

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <iosfwd>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ struct SolveArguments {
   std::map<std::string, std::vector<std::string>> settings;  ///< by the names of the table
   std::optional<std::string> time_step, repeat;
   std::optional<std::string> forces, report, vtk, culprits;
+  /// The packing file, once the box has been looked up in it.
+  std::shared_ptr<PackingFile> file;
 };
 
 /// What `pfv solve` is to do.
@@ -33,6 +36,7 @@ struct SolveRequest {
   PackingChoice choice;  ///< of the packing file
   bool at_rest = false;  ///< its velocities are left out
   bool box_of_file = false;  ///< the container is what the packing file says
+  std::shared_ptr<PackingFile> file;  ///< if it has been read for that
   Container container;
   Settings settings;
   double time_step = 0.0;  ///< s; 0: none

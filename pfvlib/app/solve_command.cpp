@@ -79,9 +79,6 @@ void warn_of_motion(const SolveRequest& request, const Packing& packing, const R
            << " m/s: no permeability is given; --at-rest leaves their velocities out\n";
 }
 
-/// Grains in water that are larger than this are most likely millimetres.
-constexpr double largest_usual_diameter = 0.3;  // m
-
 void warn_of_size(const Packing& packing, std::ostream& warnings) {
   const double diameter = 2.0 * packing.radii.mean();
   if (diameter > largest_usual_diameter)

@@ -19,6 +19,9 @@ struct MeshWall {
   double deviation = 0.0;      ///< m; the furthest that they lie from it
 };
 
+/// Nodes may stray this much from a plane, as a part of the mesh's size: STL files carry some seven digits.
+inline constexpr double planarity = 1e-6;
+
 /// Whether many flats around an axis are one round wall.
 enum class RoundMeshes { as_cylinders, as_flats };
 
@@ -26,7 +29,7 @@ enum class RoundMeshes { as_cylinders, as_flats };
 /// triangles; and where sixteen or more of them go around an axis at one distance, and others of the mesh are
 /// square to it, the cylinder of the same cross-section in their place.
 ///
-/// Nodes may stray from their plane by 1e-6 of the mesh's size (STL files carry some seven digits). Throws
+/// Nodes may stray from their plane by `planarity`. Throws
 /// InputError, which begins with `what` and names a triangle, for a mesh that is not convex or has no
 /// area. Costs triangles times planes.
 std::vector<MeshWall> walls_of_mesh(const std::vector<Triangle>& triangles, RoundMeshes round,

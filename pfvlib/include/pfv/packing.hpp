@@ -35,6 +35,9 @@ struct Packing {
   Eigen::Index size() const { return ids.size(); }
 };
 
+/// m; grains in water whose mean diameter is larger are most likely millimetres read as metres.
+inline constexpr double largest_usual_diameter = 0.3;
+
 /// Owner of the arrays that a `Packing` looks at: what file readers return.
 /// The view is valid as long as the arrays are neither resized nor destroyed.
 struct PackingArrays {

@@ -20,7 +20,6 @@ namespace {
 using Vector = Eigen::Vector3d;
 using Triangles = std::vector<Triangle>;
 
-constexpr double planarity = 1e-6;    // strays from a plane, as parts of the mesh's size
 constexpr double squareness = 1e-4;   // cosines of directions that are taken as square to each other
 constexpr std::size_t most_planes = 4096;  // of a mesh: finding them costs planes times triangles
 constexpr int fewest_flats = 16;      // around an axis: they lie within 2 % of the radius from its cylinder
