@@ -138,4 +138,15 @@ TEST(EmptySpace, IsFoundAboveABedAndNotWithin) {
   EXPECT_NE(pfv::warning_of(empty)->find("% of the pore volume"), std::string::npos);
 }
 
+TEST(Queries, RefuseAnAxisThatIsNone) {
+  const auto packing = random_packing(20, 0.05, 0.1, 4);
+  pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
+  flow.evaluate(packing.view());
+  for (const int axis : {-1, 3}) {
+    EXPECT_THROW(flow.plane_pressure(axis, 0.5), pfv::InputError);
+    EXPECT_THROW(flow.plane_flux(axis, 0.5), pfv::InputError);
+    EXPECT_THROW(flow.slice_means(axis, 0.2, 0.8), pfv::InputError);
+  }
+}
+
 }  // namespace

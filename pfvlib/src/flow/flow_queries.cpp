@@ -53,7 +53,16 @@ double Flow::pressure_at(const Eigen::Vector3d& place) const {
   return pfv::pressure_at(parts_->network(), parts_->solution, place);
 }
 
+namespace {
+
+void require_axis(int axis) {
+  if (axis < 0 || axis > 2) throw InputError("axis " + std::to_string(axis) + ": give 0, 1 or 2 for x, y or z");
+}
+
+}  // namespace
+
 double Flow::plane_pressure(int axis, double position) const {
+  require_axis(axis);
   return pfv::plane_pressure(parts_->network(), parts_->solution, axis, position);
 }
 
@@ -97,10 +106,12 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_stresses() const {
 }
 
 double Flow::plane_flux(int axis, double position) const {
+  require_axis(axis);
   return pfv::plane_flux(parts_->network(), parts_->solution, parts_->balance(), axis, position);
 }
 
 SliceMeans Flow::slice_means(int axis, double lower, double upper) const {
+  require_axis(axis);
   return pfv::slice_means(parts_->network(), parts_->solution, parts_->balance(), axis, lower,
                           upper);
 }

@@ -37,16 +37,17 @@ void check_values(const Packing& packing) {
     const std::string sphere = "sphere " + std::to_string(packing.ids[k]);
     if (!packing.positions.col(k).allFinite())
       throw InputError(sphere + ": its position " + place(packing.positions.col(k)) +
-                       " is not finite");
+                           " is not finite",
+                       {{packing.ids[k]}, {}});
     if (!(packing.radii[k] > 0.0) || !std::isfinite(packing.radii[k]))
       throw InputError(sphere + ": its radius " + std::to_string(packing.radii[k]) +
                            " is not a positive number",
                        {{packing.ids[k]}, {}});
     if (packing.velocities.cols() > 0 && !packing.velocities.col(k).allFinite())
-      throw InputError(sphere + ": its velocity " + place(packing.velocities.col(k)) +
-                       " is not finite");
+      throw InputError(sphere + ": its velocity " + place(packing.velocities.col(k)) + " is not finite",
+                       {{packing.ids[k]}, {}});
     if (packing.displaced_volumes.size() > 0 && !std::isfinite(packing.displaced_volumes[k]))
-      throw InputError(sphere + ": its displaced volume is not finite");
+      throw InputError(sphere + ": its displaced volume is not finite", {{packing.ids[k]}, {}});
   }
 }
 
