@@ -191,12 +191,13 @@ pfv::Surface PfvFaceSources::surface(int number) const {
 
 std::vector<double> PfvFaceSources::mesh_areas() const {
   std::vector<double> areas(count(), 0.0);
+  if (!container_) return areas;
   for (int number = 0; number < count(); ++number) {
     if (!meshes_[number]) continue;
     const std::vector<pfv::Triangle> triangles = triangles_of(meshes_[number], world);
     std::vector<int> chosen(triangles.size());
     std::iota(chosen.begin(), chosen.end(), 0);
-    if (container_ && sources_[number].part >= 0) chosen = parts_[number].triangles;
+    if (sources_[number].part >= 0) chosen = parts_[number].triangles;
     for (const int t : chosen)
       areas[number] += 0.5 * (triangles[t].col(1) - triangles[t].col(0)).cross(triangles[t].col(2) - triangles[t].col(0)).norm();
   }
@@ -231,10 +232,10 @@ void PfvFaceSources::turn_outwards(const Eigen::Vector3d& middle) {
 void PfvFaceSources::read() {
   read_parts();
   for (int number = 0; number < count(); ++number) {
-    if (meshes_[number] && container_ && sources_[number].part < 0)
-      read_plane(number);
+    if (meshes_[number] && sources_[number].part >= 0)
+      read_motion_of_part(number);
     else if (meshes_[number] && container_)
-      set_motion_of_mesh(shapes_[number], meshes_[number], world);
+      read_plane(number);
     else if (meshes_[number])
       read_mesh(number);
     else if (sources_[number].kind == Source::periodic)
@@ -244,6 +245,17 @@ void PfvFaceSources::read() {
     const Eigen::Vector3d far(1.7e3, -2.3e3, 3.1e3);
     positions_[number] = shapes_[number].surface.distance(far);
   }
+}
+
+/// All parts of a mesh move as it does.
+void PfvFaceSources::read_motion_of_part(int number) {
+  if (!meshes_[number]->triMesh()->isMoving()) return;  // at rest since it was bound
+  const auto first = static_cast<int>(std::find(meshes_.begin(), meshes_.end(), meshes_[number]) - meshes_.begin());
+  pfv::ContainerFace& shape = shapes_[number];
+  if (first == number) return set_motion_of_mesh(shape, meshes_[number], world);
+  shape.velocity = shapes_[first].velocity;
+  shape.angular_velocity = shapes_[first].angular_velocity;
+  shape.pivot = shapes_[first].pivot;
 }
 
 /// The parts of meshes that move, and once those of all.

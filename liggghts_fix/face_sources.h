@@ -46,7 +46,7 @@ class PfvFaceSources : protected Pointers {
   /// Of a container's face: how it moves, and its shape with the fluid inside; the latter after `follow_grains`.
   void set_motion(int number, pfv::ContainerFace& face) const;
   pfv::Surface surface(int number) const;
-  /// Area of the mesh that each face follows, m²; 0 for others. Collective.
+  /// Area of the mesh that each face of a container follows, m²; 0 for others. Collective.
   std::vector<double> mesh_areas() const;
   /// A container's face in words: its name, source, shape, and how far a mesh strays from it.
   std::string described(int number) const;
@@ -82,6 +82,7 @@ class PfvFaceSources : protected Pointers {
   void bind_part(const PfvFaceSource& source, int number);
   void read_plane(int number);
   void read_parts();
+  void read_motion_of_part(int number);
   void read_mesh(int number);
   void read_gliding(int number);
   void turn_outwards(const Eigen::Vector3d& middle);

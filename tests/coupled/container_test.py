@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Walls as a script has them: cylinders, planes and meshes at any angle, moving and turning ones."""
-import json
 import math
-import subprocess
 import unittest
 
-from coupled import BIN, EDGE, FLOW, HANG, CoupledTest, dump, faces, forces, largest_difference, packing
+from coupled import EDGE, FLOW, CoupledTest, dump, faces, forces, largest_difference, packing
 from coupled import read_dump, read_thermo, restarted_head, write_data
 from plates import write_plate
 
@@ -31,27 +29,16 @@ class Containers(CoupledTest):
         super().setUp()
         write_data(self.folder, packing())
 
-    def static(self, container, *options):
-        """Forces of `pfv solve` on the first instant of walls.dump."""
-        (self.folder / "container.json").write_text(json.dumps(container))
-        words = [str(BIN / "pfv"), "solve", "--packing", "walls.dump", "--container", "container.json",
-                 "--viscosity", "0.01", "--forces", "forces.csv", *options]
-        done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, timeout=HANG)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        rows = [line.split(",") for line in (self.folder / "forces.csv").read_text().splitlines()[1:]]
-        return {int(row[0]): [float(value) for value in row[1:4]] for row in rows}
-
     def test_primitive_cylinder_and_planes_are_the_container_of_the_command(self):
         write_data(self.folder, in_pipe(packing(8)))
         said = self.liggghts(HEAD + PIPE + f"fix flow all pfv {IN_PIPE}\n" + dump("walls.dump") + "run 0\n")
         volume = math.pi * RADIUS**2 * EDGE
         self.assertIn(f"container of {volume:.4g} m3, {len(in_pipe(packing(8)))} grains inside, 0 outside", said)
-        static = self.static(
-            {"planes": [{"name": "bottom", "inward_normal": [0, 0, 1], "offset": 0.0},
-                        {"name": "top", "inward_normal": [0, 0, -1], "offset": -EDGE}],
-             "cylinders": [{"name": "side", "axis": [0, 0, 1], "point": [MIDDLE, MIDDLE, 0.0],
-                            "radius": RADIUS}]},
-            "--face", "bottom:pressure=10", "--face", "top:pressure=0")
+        container = {"planes": [{"name": "bottom", "inward_normal": [0, 0, 1], "offset": 0.0},
+                     {"name": "top", "inward_normal": [0, 0, -1], "offset": -EDGE}],
+                     "cylinders": [{"name": "side", "axis": [0, 0, 1], "point": [MIDDLE, MIDDLE, 0.0],
+                     "radius": RADIUS}]}
+        static = self.pfv_forces("walls.dump", "--face", "bottom:pressure=10", "--face", "top:pressure=0", container=container)
         coupled = forces(read_dump(self.folder / "walls.dump")[0])
         self.assertLess(largest_difference(coupled, static), 1e-12)
 
@@ -78,14 +65,14 @@ class Containers(CoupledTest):
         self.liggghts(HEAD + lid + f"fix flow all pfv viscosity 0.01 container {sides} face lid mesh lid pressure 0\n" +
                       dump("walls.dump") + "run 0\n")
         slope = lean / EDGE
-        static = self.static({"planes": [
-            {"name": "x0", "inward_normal": [1, 0, 0], "offset": 0},
-            {"name": "x1", "inward_normal": [-1, 0, 0], "offset": -EDGE},
-            {"name": "y0", "inward_normal": [0, 1, 0], "offset": 0},
-            {"name": "y1", "inward_normal": [0, -1, 0], "offset": -EDGE},
-            {"name": "floor", "inward_normal": [0, 0, 1], "offset": 0},
-            {"name": "lid", "inward_normal": [-slope, 0, -1], "offset": -(EDGE + lean)}]},
-            "--face", "floor:pressure=10", "--face", "lid:pressure=0")
+        container = {"planes": [
+                     {"name": "x0", "inward_normal": [1, 0, 0], "offset": 0},
+                     {"name": "x1", "inward_normal": [-1, 0, 0], "offset": -EDGE},
+                     {"name": "y0", "inward_normal": [0, 1, 0], "offset": 0},
+                     {"name": "y1", "inward_normal": [0, -1, 0], "offset": -EDGE},
+                     {"name": "floor", "inward_normal": [0, 0, 1], "offset": 0},
+                     {"name": "lid", "inward_normal": [-slope, 0, -1], "offset": -(EDGE + lean)}]}
+        static = self.pfv_forces("walls.dump", "--face", "floor:pressure=10", "--face", "lid:pressure=0", container=container)
         coupled = forces(read_dump(self.folder / "walls.dump")[0])
         self.assertLess(largest_difference(coupled, static), 1e-9)
 

@@ -155,10 +155,13 @@ class CoupledTest(unittest.TestCase):
         for part in parts:
             self.assertIn(part, errors[0])
 
-    def pfv_solve(self, packing_file, *options, box=(0.0, EDGE) * 3):
-        """(report, {id: total force}) of `pfv solve` on a packing in the test's folder."""
-        words = [str(BIN / "pfv"), "solve", "--packing", packing_file, "--box",
-                 *[repr(v) for v in box], "--viscosity", "0.01", "--forces", "forces.csv",
+    def pfv_solve(self, packing_file, *options, box=(0.0, EDGE) * 3, container=None):
+        """(report, {id: total force}) of `pfv solve` on a packing in the test's folder, in a box or a container."""
+        room = ["--box", *[repr(v) for v in box]]
+        if container:
+            (self.folder / "container.json").write_text(json.dumps(container))
+            room = ["--container", "container.json"]
+        words = [str(BIN / "pfv"), "solve", "--packing", packing_file, *room, "--viscosity", "0.01", "--forces", "forces.csv",
                  "--report", "report.json", *options]
         done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, timeout=HANG)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -167,5 +170,5 @@ class CoupledTest(unittest.TestCase):
         return (json.loads((self.folder / "report.json").read_text()),
                 {int(row[0]): [float(value) for value in row[1:4]] for row in rows})
 
-    def pfv_forces(self, packing_file, *options, **box):
-        return self.pfv_solve(packing_file, *options, **box)[1]
+    def pfv_forces(self, packing_file, *options, **room):
+        return self.pfv_solve(packing_file, *options, **room)[1]

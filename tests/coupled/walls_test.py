@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Walls found in the script: `container walls`, meshes that are several walls or round, walls that the fluid
 does not see."""
-import json
 import math
 import re
-import subprocess
 import unittest
 
-from coupled import BIN, EDGE, FLOW, HANG, CoupledTest, dump, forces, largest_difference, packing
+from coupled import EDGE, FLOW, CoupledTest, dump, forces, largest_difference, packing
 from coupled import read_dump, read_thermo, restarted_head, write_data
 from plates import funnel, lid, quad, ring, write_mesh
 
@@ -44,16 +42,6 @@ class Walls(CoupledTest):
         said = self.liggghts(script + dump(name) + "run 0\n")
         return forces(read_dump(self.folder / name)[0]), said
 
-    def static(self, container, *options):
-        """Forces of `pfv solve` on the first instant of walls.dump."""
-        (self.folder / "container.json").write_text(json.dumps(container))
-        words = [str(BIN / "pfv"), "solve", "--packing", "walls.dump", "--container", "container.json",
-                 "--viscosity", "0.01", "--forces", "forces.csv", *options]
-        done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, timeout=HANG)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        rows = [line.split(",") for line in (self.folder / "forces.csv").read_text().splitlines()[1:]]
-        return {int(row[0]): [float(value) for value in row[1:4]] for row in rows}
-
     def test_a_tube_of_flats_is_the_cylinder_of_its_cross_section(self):
         write_data(self.folder, within(packing(8), RADIUS))
         write_mesh(self.folder / "tube.stl", funnel(ring(32, RADIUS, -0.01, MIDDLE), ring(32, RADIUS, EDGE + 0.01, MIDDLE)))
@@ -61,12 +49,11 @@ class Walls(CoupledTest):
         self.assertRegex(said, r"held by 3 walls: floor \(plane\), roof \(plane\), tube \(cylinder of radius 0.04486 m "
                                r"for flats that lie within 0.000\d+ m of it\)")
         section = 16 * RADIUS**2 * math.sin(math.pi / 16)
-        static = self.static(
-            {"planes": [{"name": "floor", "inward_normal": [0, 0, 1], "offset": 0.0},
-                        {"name": "roof", "inward_normal": [0, 0, -1], "offset": -EDGE}],
-             "cylinders": [{"name": "tube", "axis": [0, 0, 1], "point": [MIDDLE, MIDDLE, 0.0],
-                            "radius": math.sqrt(section / math.pi)}]},
-            "--face", "floor:pressure=10", "--face", "roof:pressure=0")
+        container = {"planes": [{"name": "floor", "inward_normal": [0, 0, 1], "offset": 0.0},
+                     {"name": "roof", "inward_normal": [0, 0, -1], "offset": -EDGE}],
+                     "cylinders": [{"name": "tube", "axis": [0, 0, 1], "point": [MIDDLE, MIDDLE, 0.0],
+                     "radius": math.sqrt(section / math.pi)}]}
+        static = self.pfv_forces("walls.dump", "--face", "floor:pressure=10", "--face", "roof:pressure=0", container=container)
         self.assertLess(largest_difference(coupled, static), 1e-5)  # LIGGGHTS reads STL files in single precision
 
     def test_a_funnel_is_its_planes_and_what_lies_under_it_bounds_nothing(self):
@@ -86,10 +73,9 @@ class Walls(CoupledTest):
             planes = [{"name": f"hopper_{k + 1}", "inward_normal": [*n, slope], "offset":
                        -math.sqrt(0.5) * narrow + MIDDLE * sum(n)}
                       for k, n in enumerate([(0, -1), (1, 0), (0, 1), (-1, 0)])]
-            static = self.static(
-                {"planes": planes + [{"name": "outlet", "inward_normal": [0, 0, 1], "offset": 0},
-                                     {"name": "top", "inward_normal": [0, 0, -1], "offset": -EDGE}]},
-                "--face", "top:pressure=10", "--face", "outlet:pressure=0")
+            container = {"planes": planes + [{"name": "outlet", "inward_normal": [0, 0, 1], "offset": 0},
+                         {"name": "top", "inward_normal": [0, 0, -1], "offset": -EDGE}]}
+            static = self.pfv_forces("walls.dump", "--face", "top:pressure=10", "--face", "outlet:pressure=0", container=container)
             coupled = forces(read_dump(self.folder / "walls.dump")[0])
             self.assertLess(largest_difference(coupled, static), 1e-5)
 

@@ -138,6 +138,26 @@ TEST(EmptySpace, IsFoundAboveABedAndNotWithin) {
   EXPECT_NE(pfv::warning_of(empty)->find("% of the pore volume"), std::string::npos);
 }
 
+// The figures beside EmptySpace: what sets a packing apart from room that is none of its own.
+TEST(EmptySpace, OfLoosePackingsSuspensionsAndABoxAroundACylinder) {
+  const auto part_in = [](const pfv::PackingArrays& packing) {
+    pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
+    flow.evaluate(packing.view());
+    return flow.empty_space().part;
+  };
+  EXPECT_NEAR(part_in(pfv::dense_packing(1000, 0.4)), 0.02, 0.005);
+  EXPECT_NEAR(part_in(pfv::dense_packing(1000, 0.2)), 0.17, 0.005);
+  const pfv::PackingArrays dense = support::data_packing("packing_500.csv");
+  std::vector<Eigen::Index> inside;
+  for (Eigen::Index k = 0; k < dense.ids.size(); ++k)
+    if ((dense.positions.col(k).head<2>() - Eigen::Vector2d(0.5, 0.5)).norm() < 0.47) inside.push_back(k);
+  pfv::PackingArrays cylinder;
+  cylinder.ids = dense.ids(inside);
+  cylinder.positions = dense.positions(Eigen::all, inside);
+  cylinder.radii = dense.radii(inside);
+  EXPECT_NEAR(part_in(cylinder), 0.26, 0.005);
+}
+
 TEST(Queries, RefuseAnAxisThatIsNone) {
   const auto packing = random_packing(20, 0.05, 0.1, 4);
   pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
