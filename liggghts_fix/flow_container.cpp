@@ -83,6 +83,7 @@ void FixPfv::place_faces(pfv::Container& container) {
   if (settings_.container) {
     for (int number = 0; number < container.face_count(); ++number)
       container.faces[number].surface = faces_.surface(number);
+    if (flow_ && pfv::take_bounds(container, flow_->container())) return;
     pfv::Container whole = pfv::container_of(container.faces);
     whole.regions = container.regions;
     container = std::move(whole);

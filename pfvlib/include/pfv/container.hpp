@@ -88,8 +88,11 @@ inline constexpr int most_faces = 64;
 
 /// Of these faces, with `lower` and `upper` filled in. Throws InputError as `check` does.
 Container container_of(std::vector<ContainerFace> faces);
-/// Fills in `lower` and `upper`; a box keeps its own.
+/// Fills in `lower` and `upper`; a box keeps its own. Cost: faces².
 void find_bounds(Container& container);
+/// Takes them from a container whose faces have the same places and shapes, without that cost; false, and nothing
+/// done, where they have not, or for a box.
+bool take_bounds(Container& container, const Container& known);
 
 /// Volume (m³), area of each face (m²). Throws InputError for a container that is not closed.
 double volume_of(const Container& container);

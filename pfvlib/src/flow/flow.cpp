@@ -152,11 +152,16 @@ int Flow::stages() const { return parts_->solution.stages; }
 void Flow::rebuild() { parts_->keeper.discard(true); }
 
 void Flow::set_container(const Container& container) {
-  check(container);
+  Container next = container;
+  if (take_bounds(next, parts_->container)) {
+    check_conditions(next);
+  } else {
+    check(container);
+    find_bounds(next);
+  }
   check(container, parts_->options);
   if (!same_kinds(parts_->container, container)) parts_->keeper.discard(true);
-  parts_->container = container;
-  find_bounds(parts_->container);
+  parts_->container = std::move(next);
 }
 
 void Flow::set_retriangulation(StrainMeasure measure, double strain) {

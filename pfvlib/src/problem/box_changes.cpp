@@ -28,14 +28,17 @@ bool same_kinds(const Container& a, const Container& b) {
   return true;
 }
 
-bool same_shape(const Container& a, const Container& b) {
+bool same_surfaces(const Container& a, const Container& b) {
   const auto same = [](const ContainerFace& one, const ContainerFace& other) {
     const Surface &s = one.surface, &t = other.surface;
     return s.kind == t.kind && s.normal == t.normal && s.offset == t.offset && s.axis == t.axis &&
            s.point == t.point && s.radius == t.radius;
   };
-  return a.is_box == b.is_box && a.lower == b.lower && a.upper == b.upper &&
-         std::equal(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(), same);
+  return std::equal(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(), same);
+}
+
+bool same_shape(const Container& a, const Container& b) {
+  return a.is_box == b.is_box && a.lower == b.lower && a.upper == b.upper && same_surfaces(a, b);
 }
 
 void require_time_step(double dt, bool commit) {

@@ -10,6 +10,8 @@ namespace pfv {
 bool same_kinds(const Container& a, const Container& b);
 
 /// Whether their faces have the same places and shapes, to the last bit.
+bool same_surfaces(const Container& a, const Container& b);
+/// The same with their bounds.
 bool same_shape(const Container& a, const Container& b);
 
 /// Throws InputError unless `dt` (s) can be stepped over.

@@ -2,6 +2,7 @@
 #include "pfv/container.hpp"
 
 #include "pfv/error.hpp"
+#include "problem/box_changes.hpp"
 #include "problem/container_geometry.hpp"
 #include "text/number_text.hpp"
 
@@ -213,17 +214,28 @@ std::optional<Box> box_of(const Container& container) {
   return box;
 }
 
+bool take_bounds(Container& container, const Container& known) {
+  if (container.is_box || known.is_box || !same_surfaces(container, known)) return false;
+  container.lower = known.lower;
+  container.upper = known.upper;
+  return true;
+}
+
 void check(const Container& container) {
   if (const std::optional<Box> box = box_of(container)) {
     check(*box);
     return;
   }
+  check_conditions(container);
+  require_different_planes(container);
+  check_areas(container);
+}
+
+void check_conditions(const Container& container) {
   check_shapes(container);
   for (const ContainerFace& face : container.faces) check(face.boundary, "face " + face.name);
   if (container.any_periodic() || !container.pressure_gradient.isZero(0.0))
     throw InputError("container: periodic axes and a pressure gradient need a box");
-  require_different_planes(container);
-  check_areas(container);
   check_patches(container);
   check(box_around(container));
 }

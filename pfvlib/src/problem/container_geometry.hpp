@@ -23,6 +23,9 @@ ContainerGeometry geometry_of(const Container& container, const Eigen::Vector3d&
 
 /// The same when the faces have gone on moving as they do for `time` (s; may be negative).
 ContainerGeometry geometry_after(const Container& container, double time, const Eigen::Vector3d& origin);
+/// All that `check` does but for measuring the faces: for a container whose faces are where they have been checked.
+void check_conditions(const Container& container);
+
 /// Whether a face moves.
 bool any_face_moves(const Container& container);
 
