@@ -160,6 +160,9 @@ struct Options {
   bool sphere_pressure = false;  ///< also the mean pressure around each sphere
   bool shear_viscous = false;  ///< add the shear viscous forces of sliding neighbours (Catalano 2012 eqs.
                                ///< 6.29-6.30); implicit steps with them: solver supernodal
+  /// Spheres in open water, few in large pores, are braked at least as in unbounded fluid (doc/open_water.md). With
+  /// reciprocal rates; nothing in a dense bed.
+  bool open_water = true;
 };
 
 /// When and how a host that moves the grains asks for forces.

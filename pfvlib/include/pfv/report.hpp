@@ -36,6 +36,7 @@ struct Counts {
   /// Of the present network: throats whose law needed the rule for phi <= 0, gamma <= 0 or A_f <= 0;
   /// tetrahedra that were merged into another pore; pores at rest without any way to a pressure.
   std::int64_t degenerate_throats = 0, merged_pores = 0, pinned_pores = 0;
+  std::int64_t open_water = 0;  ///< of the present network: spheres that are braked as in open water
 };
 
 /// CPU seconds of the process, all threads, summed over the life of the Flow.
@@ -101,6 +102,7 @@ void for_each_entry(const Counts& counts, const See& see) {
   see("degenerate_throats", counts.degenerate_throats);
   see("merged_pores", counts.merged_pores);
   see("pinned_pores", counts.pinned_pores);
+  see("open_water", counts.open_water);
 }
 template <class See>
 void for_each_entry(const Seconds& seconds, const See& see) {

@@ -49,6 +49,7 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
                     {dt, commit, memory.pressures.size() > 0, solution}, work, taken_up);
   if (factor_pressures(built, problem(), dt, work)) schemes.forget_factor();
   work.counts.pinned_pores = 0;
+  work.counts.open_water = built.operators.open_water ? static_cast<std::int64_t>(built.operators.open_water->size()) : 0;
   for (const Isolated& isolated : built.kept.system.isolated)
     work.counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
   return built;

@@ -2,6 +2,7 @@
 #include "physics/conductances.hpp"
 
 #include "geometry/pi.hpp"
+#include "physics/isotropic_drag.hpp"
 #include "physics/open_throat.hpp"
 
 #include <Eigen/Core>
@@ -150,6 +151,7 @@ Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwor
     }
   });
   for (const int count : by_rule) result.degenerate += count;
+  if (law == ConductanceLaw::open_throat) make_drag_isotropic(network, throats, spheres, result.value);
   close_what_round_off_hides(result, network);
   return result;
 }

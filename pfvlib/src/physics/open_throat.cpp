@@ -19,7 +19,7 @@ constexpr double even_gap = 1e-3;            // w is linear below: round-off ope
 constexpr double wall_share = 2.0 / 3.0;     // of the wall's area that the throat's own fluid meets
 constexpr double plate_kozeny = 3.0;         // Poiseuille flow between plates
 constexpr double hidden_wall_share = 0.8;    // of the caps beyond walls
-constexpr double largest_per_area2 = 10.0;   // bound on mu g / S²
+constexpr double largest_per_area2 = 1e3;    // bound on mu g / S²
 
 /// Share of a side (between two spheres, or a sphere and a wall) that its gap has opened.
 double side_openness(double distance, double radii) {

@@ -19,7 +19,7 @@ struct OpenThroat {
 /// the spheres once they part:
 ///   1 / g = 1 / g_touching + w / g_open,
 ///   g_touching = alpha A^f R² / mu,  g_open = S e R² / (k mu),
-/// but at most g = 10 S 2^n S / mu (n slip walls: they mirror the facet), where
+/// but at most g = 1000 S 2^n S / mu (n slip walls: they mirror the facet), where
 ///   R = phi / (gamma_s + 2/3 gamma_w), of spheres and no-slip walls: a wall's area goes wholly to
 ///       the side throats of its pore, which hold two thirds of the fluid; phi and gamma_s are
 ///       without the lenses and caps that overlaps hide, and 0.8 of the caps beyond walls;

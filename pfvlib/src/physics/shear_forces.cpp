@@ -122,9 +122,15 @@ std::vector<ShearPair> shear_pairs(const PoreNetwork& network, const Throats& th
   return pairs;
 }
 
-Eigen::Matrix3d resistance_of(const ShearPair& pair, double viscosity) {
-  return viscosity / pair.hydraulic_radius * pair.area *
-         (Eigen::Matrix3d::Identity() - pair.direction * pair.direction.transpose());
+void add_blocks(const std::vector<ShearPair>& pairs, double viscosity, std::vector<ResistanceBlock>& blocks) {
+  for (const ShearPair& pair : pairs) {
+    const Eigen::Matrix3d resistance = viscosity / pair.hydraulic_radius * pair.area *
+                                       (Eigen::Matrix3d::Identity() - pair.direction * pair.direction.transpose());
+    blocks.push_back({pair.first, pair.first, resistance});
+    blocks.push_back({pair.second, pair.second, resistance});
+    blocks.push_back({pair.first, pair.second, -resistance});
+    blocks.push_back({pair.second, pair.first, -resistance});
+  }
 }
 
 Eigen::Matrix3Xd shear_forces(const std::vector<ShearPair>& pairs, double viscosity,

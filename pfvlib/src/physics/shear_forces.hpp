@@ -2,6 +2,7 @@
 #pragma once
 
 #include "network/spheres.hpp"
+#include "physics/resistance.hpp"
 #include "physics/throats.hpp"
 #include "pfv/network.hpp"
 
@@ -26,8 +27,8 @@ struct ShearPair {
 std::vector<ShearPair> shear_pairs(const PoreNetwork& network, const Throats& throats, const Spheres& spheres,
                                    const Spheres& vertices);
 
-/// What a pair resists relative velocities with, kg/s: mu / R_h S across its direction, none along it.
-Eigen::Matrix3d resistance_of(const ShearPair& pair, double viscosity);
+/// Adds R of these pairs: mu / R_h S across the direction of each, none along it.
+void add_blocks(const std::vector<ShearPair>& pairs, double viscosity, std::vector<ResistanceBlock>& blocks);
 
 /// Shear viscous forces (Catalano 2012 eqs. 6.29-6.30): mu / R_h S times the tangential relative velocity
 /// of the centres, 3 x N, N. Each pair is an action and its reaction along the sliding; walls take none

@@ -277,6 +277,8 @@ std::vector<Setting> of_method() {
                 "torques", option(&Options::torques)),
       yes_or_no(row("Method", "shear_viscous", "add the viscous forces of neighbours that slide", fix, pores),
                 "shear viscous forces", option(&Options::shear_viscous)),
+      yes_or_no(row("Method", "open_water", "brake grains in open water at least as in unbounded fluid", both, pores),
+                "drag in open water", option(&Options::open_water)),
   };
 }
 

@@ -45,7 +45,7 @@ std::vector<Eigen::Matrix3d> viscosity_matrices(BuiltNetwork& built, const Probl
       rates_of(built, alone, *problem.team, opened);
       const Eigen::VectorXd pressures = homogeneous_pressures(built, opened, counts.query_solve);
       result[c].col(axis) = row_times(*built.operators.force_matrix, k, pressures) -
-                            shear_forces_of(built, problem.fluid.viscosity, alone).col(k).head<3>();
+                            resisting_forces(built, problem.fluid.viscosity, alone).col(k).head<3>();
       alone(axis, k) = 0.0;
     }
   }

@@ -163,7 +163,7 @@ std::vector<Velocity> unknown_velocities(const Matrix6Xd& yielding, int spheres)
 }
 
 SparseRows resistances(const std::vector<Velocity>& velocities, const Matrix6Xd& yielding, int spheres,
-                       const std::vector<ShearPair>& pairs, double viscosity) {
+                       const std::vector<ResistanceBlock>& resistance) {
   std::vector<std::array<int, 3>> number(spheres, {-1, -1, -1});
   SparseRows rows(velocities.size());
   for (int i = 0; i < static_cast<int>(velocities.size()); ++i) {
@@ -171,18 +171,10 @@ SparseRows resistances(const std::vector<Velocity>& velocities, const Matrix6Xd&
     if (component < 3) number[grain][component] = i;
     rows[i][i] = 1.0 / yielding(component, grain);
   }
-  const auto add = [&](int of, int by, const Eigen::Matrix3d& block) {
+  for (const auto& [of, by, block] : resistance)
     for (int c = 0; c < 3; ++c)
       for (int d = 0; d < 3; ++d)
         if (number[of][c] >= 0 && number[by][d] >= 0) rows[number[of][c]][number[by][d]] += block(c, d);
-  };
-  for (const ShearPair& pair : pairs) {
-    const Eigen::Matrix3d resistance = resistance_of(pair, viscosity);
-    add(pair.first, pair.first, resistance);
-    add(pair.second, pair.second, resistance);
-    add(pair.first, pair.second, -resistance);
-    add(pair.second, pair.first, -resistance);
-  }
   return rows;
 }
 
@@ -226,7 +218,7 @@ std::vector<int> begins_of(const std::vector<Velocity>& velocities) {
 
 ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
                                const Bases& bases, const Matrix6Xd& yielding,
-                               const std::vector<ShearPair>& pairs, double viscosity) {
+                               const std::vector<ResistanceBlock>& resistance) {
   const int spheres = forces.spheres;
   ShearedSystem result;
   result.pressures = unknowns.count;
@@ -240,7 +232,7 @@ ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unk
   for (const auto& [grain, component] : result.velocities) grains(component, grain) = 1.0;
   result.matrix = joined(sum_of(system.matrix, pins, faces), yielding_rows(unknowns, forces, bases, grains),
                          begins_of(result.velocities), result.velocities,
-                         resistances(result.velocities, yielding, spheres, pairs, viscosity));
+                         resistances(result.velocities, yielding, spheres, resistance));
   result.signs.assign(result.matrix.size(), 1.0);
   std::fill_n(result.signs.begin(), result.pressures, -1.0);
   return result;

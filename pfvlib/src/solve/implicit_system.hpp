@@ -2,7 +2,7 @@
 #pragma once
 
 #include "physics/force_matrix.hpp"
-#include "physics/shear_forces.hpp"
+#include "physics/resistance.hpp"
 #include "physics/volume_rates.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/pressure_system.hpp"
@@ -28,7 +28,7 @@ ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& u
                                  const ForceMatrix& forces, const Bases& bases,
                                  const Matrix6Xd& yielding);
 
-/// The same step where shear forces -R v join the velocities of neighbours: (M/dt + R)^-1 is full, so that what the
+/// The same step where forces -R v, of shear or in open water, join the velocities of neighbours: (M/dt + R)^-1 is full, so that what the
 /// grains yield by stays unknown beside the pressures:
 ///
 ///     [ -(G + S_f^T B_f S_f)   -S^T     ] [p]   [-b]
@@ -48,10 +48,10 @@ struct ShearedSystem {
   std::vector<int> last;
 };
 
-/// `pairs` and `viscosity`: R.
+/// `resistance`: R, among spheres.
 ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
                                const Bases& bases, const Matrix6Xd& yielding,
-                               const std::vector<ShearPair>& pairs, double viscosity);
+                               const std::vector<ResistanceBlock>& resistance);
 
 /// Of the faces alone: what is eliminated from a sheared system.
 Matrix6Xd of_faces(Matrix6Xd yielding, int spheres);

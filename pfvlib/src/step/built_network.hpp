@@ -5,6 +5,7 @@
 #include "network/pore_boundaries.hpp"
 #include "physics/conductances.hpp"
 #include "physics/force_matrix.hpp"
+#include "physics/open_water.hpp"
 #include "physics/shear_forces.hpp"
 #include "physics/solid_union.hpp"
 #include "physics/throats.hpp"
@@ -48,6 +49,7 @@ struct KeptOperators {
   std::optional<std::pair<Eigen::Vector3d, Loads>> gradient_loads;  ///< for that macroscopic gradient
   std::optional<SurfacePressure> surface_pressure;
   std::optional<std::vector<ShearPair>> shear_pairs;
+  std::optional<std::vector<OpenWaterDrag>> open_water;
   std::optional<SolidUnion> solid;
   std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis
 };

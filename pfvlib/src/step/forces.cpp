@@ -83,6 +83,7 @@ void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& pac
   Loads& loads = solution.loads;
   multiply(*built.operators.force_matrix, solution.relative_pressures, *problem.team, loads);
   if (!problem.container.pressure_gradient.isZero(0.0)) loads += gradient_loads(built, problem);
+  if (solution.moving) add_open_water_forces(built, solution.motion, loads);
   spread(loads.topRows<3>(), columns, packing.size(), forces.total);
   if (options.torques) spread(loads.bottomRows<3>(), columns, packing.size(), forces.torque);
   if (options.split_forces) split(built, problem, solution, forces);

@@ -111,7 +111,7 @@ void ImplicitStep::find(const StepTask& task, Solution& solution) {
   refuse_undetermined(problem, solution.moving);
   make_force_matrices(built, problem, work.counts);
   make_volume_rates(built, problem, work.counts);
-  const bool sheared = problem.options.shear_viscous;
+  const bool sheared = problem.options.shear_viscous || has_open_water(built);
   if (sheared)
     sheared_.factor(task, forced.yielding);
   else

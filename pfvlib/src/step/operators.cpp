@@ -43,6 +43,23 @@ void make_volume_rates(BuiltNetwork& built, const Problem& problem, Counts& coun
                                 built.network.pores(), *problem.team);
 }
 
+namespace {
+
+void find_open_water(BuiltNetwork& built, const Problem& problem) {
+  built.operators.open_water.emplace();
+  if (!problem.options.open_water || problem.options.volume_rates == VolumeRates::geometric) return;
+  std::vector<ResistanceBlock> of_shear;
+  if (built.operators.shear_pairs) add_blocks(*built.operators.shear_pairs, problem.fluid.viscosity, of_shear);
+  const std::vector<int>& unknown = built.unknowns.of_pore;
+  std::vector<char> imposed(unknown.size());
+  std::transform(unknown.begin(), unknown.end(), imposed.begin(), [](int of) { return of == Unknowns::imposed; });
+  built.operators.open_water =
+      open_water_drags(built.network, built.grains.spheres, built.vertices, built.throats, built.conductances,
+                       *built.operators.force_matrix, imposed, problem.container, problem.fluid.viscosity, of_shear);
+}
+
+}  // namespace
+
 void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& counts) {
   make_force_matrix(built, problem, counts);
   if (problem.options.split_forces && !built.operators.pressure_force_matrix)
@@ -51,6 +68,10 @@ void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& co
                      built.grains.spheres.size(), {true, false, false}, *problem.team);
   if (problem.options.shear_viscous && !built.operators.shear_pairs)
     built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.grains.spheres, built.vertices);
+  if (!built.operators.open_water) {
+    find_open_water(built, problem);
+    counts.open_water = static_cast<std::int64_t>(built.operators.open_water->size());
+  }
   if (problem.options.sphere_pressure && !built.operators.surface_pressure)
     built.operators.surface_pressure =
         surface_pressure(built.network, built.vertices, built.grains.spheres);
@@ -75,18 +96,50 @@ const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
   return kept->second;
 }
 
-Loads shear_forces_of(const BuiltNetwork& built, double viscosity, const Motion& motion) {
-  Loads sum = Loads::Zero(6, motion.cols());
+namespace {
+
+/// How much faster images move than their spheres, a column for a period along each axis, m/s.
+Eigen::Matrix3d velocities_of_periods(const BuiltNetwork& built, const Motion& motion) {
   const Eigen::Index spheres = built.grains.spheres.size();
-  if (!built.operators.shear_pairs) return sum;
   Eigen::Matrix3d of_periods = Eigen::Matrix3d::Zero();
   for (int axis = 0; axis < 3; ++axis)
     if (built.container.periodic[axis])
       of_periods.col(axis) =
           (motion.col(spheres + 2 * axis + 1) - motion.col(spheres + 2 * axis)).head<3>();
-  sum.topLeftCorner(3, spheres) = shear_forces(*built.operators.shear_pairs, viscosity,
-                                               motion.topLeftCorner(3, spheres), of_periods);
+  return of_periods;
+}
+
+}  // namespace
+
+Loads shear_forces_of(const BuiltNetwork& built, double viscosity, const Motion& motion) {
+  Loads sum = Loads::Zero(6, motion.cols());
+  const Eigen::Index spheres = built.grains.spheres.size();
+  if (built.operators.shear_pairs)
+    sum.topLeftCorner(3, spheres) = shear_forces(*built.operators.shear_pairs, viscosity,
+                                                 motion.topLeftCorner(3, spheres), velocities_of_periods(built, motion));
   return sum;
+}
+
+void add_open_water_forces(const BuiltNetwork& built, const Motion& motion, Loads& loads) {
+  if (has_open_water(built))
+    add_open_water_forces(*built.operators.open_water, motion, velocities_of_periods(built, motion), loads);
+}
+
+Loads resisting_forces(const BuiltNetwork& built, double viscosity, const Motion& motion) {
+  Loads sum = shear_forces_of(built, viscosity, motion);
+  add_open_water_forces(built, motion, sum);
+  return sum;
+}
+
+std::vector<ResistanceBlock> resistance_blocks(const BuiltNetwork& built, double viscosity) {
+  std::vector<ResistanceBlock> blocks;
+  if (built.operators.shear_pairs) add_blocks(*built.operators.shear_pairs, viscosity, blocks);
+  if (built.operators.open_water) add_blocks(*built.operators.open_water, blocks);
+  return blocks;
+}
+
+bool has_open_water(const BuiltNetwork& built) {
+  return built.operators.open_water && !built.operators.open_water->empty();
 }
 
 void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates) {

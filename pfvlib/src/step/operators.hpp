@@ -24,6 +24,14 @@ Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures);
 const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem);
 /// Shear forces of this motion; none where switched off.
 Loads shear_forces_of(const BuiltNetwork& built, double viscosity, const Motion& motion);
+/// Adds what brakes spheres in open water, and its reactions on what stands around.
+void add_open_water_forces(const BuiltNetwork& built, const Motion& motion, Loads& loads);
+/// What resists this motion beside the pressures, both of these: -R v, N.
+Loads resisting_forces(const BuiltNetwork& built, double viscosity, const Motion& motion);
+/// R of the spheres.
+std::vector<ResistanceBlock> resistance_blocks(const BuiltNetwork& built, double viscosity);
+/// Whether any sphere stands in open water; not before the forces' matrices are made.
+bool has_open_water(const BuiltNetwork& built);
 
 /// dV/dt of each pore, m³/s, from the network as it was built.
 void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates);

@@ -67,7 +67,7 @@ void ShearedImplicit::factor(const StepTask& task, Matrix6Xd yielding) {
   {
     const PhaseClock clock(work.seconds.assemble);
     factor_->system = assemble_sheared(built.kept.system, built.unknowns, *built.operators.force_matrix, built.bases,
-                                       yielding, *built.operators.shear_pairs, problem.fluid.viscosity);
+                                       yielding, resistance_blocks(built, problem.fluid.viscosity));
   }
   const ShearedSystem& system = factor_->system;
   if (!factor_->solver || system.matrix.row_begin != old.row_begin || system.matrix.column != old.column ||
@@ -100,7 +100,7 @@ Loads ShearedImplicit::follow(const StepTask& task, const ForcedMotion& forced, 
     solution.motion(component, grain) += factor_->unknowns[row++];
   rates_of(built, solution.motion, *problem.team, solution.rates);
   spread_over_pores(growth, built.throats, solution.rates);
-  return forced.held + pressures + shear_forces_of(built, problem.fluid.viscosity, solution.motion);
+  return forced.held + pressures + resisting_forces(built, problem.fluid.viscosity, solution.motion);
 }
 
 /// As refine_pressures: the defects of continuity and of the balance of forces drive a correction of both.

@@ -37,7 +37,7 @@ void run_recursion(const StepTask& task, const ForcedMotion& forced,
     find_rates(built, problem, now, work, solution);
     solve_pressures(built, problem, *built.kept.solver, work, solution);
     const Loads loads = pressure_loads(built, solution) +
-                        shear_forces_of(built, problem.fluid.viscosity, now);
+                        resisting_forces(built, problem.fluid.viscosity, now);
     Motion next = (1.0 - stage.m - stage.n) * forced.start + stage.m * now + stage.n * before +
                   stage.f * (forced.moved_by(loads) - forced.start);
     pressure.take(stage, solution.relative_pressures);

@@ -45,7 +45,7 @@ double largest_drag(const BuiltNetwork& built, const Problem& problem,
     const Motion v = (u.reshaped(6, root.cols()).array() * root.array()).matrix();
     rates_of(built, v, *problem.team, opened);
     const Loads load = loads_of(built, homogeneous_pressures(built, opened, solves)) -
-                       shear_forces_of(built, problem.fluid.viscosity, v);
+                       resisting_forces(built, problem.fluid.viscosity, v);
     return Eigen::VectorXd((load.array() * root.array()).matrix().reshaped());
   };
   return largest_eigenvalue(drag, static_cast<int>(root.size()));

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains that have left the bed: the drag that a network of few pores leaves out.
+#include "pfv/dense_packing.hpp"
+#include "pfv/pfv.hpp"
+#include "physics/open_water.hpp"
+#include "support/boxes.hpp"
+#include "support/long_steps.hpp"
+#include "support/packings.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace support;
+using pfv::Coupling;
+using pfv::Face;
+using pfv::Wall;
+
+constexpr double radius = 1e-3;  // m
+
+pfv::Box tank(const Eigen::Vector3d& edges, const std::vector<Face>& open, Wall wall) {
+  pfv::Box box;
+  box.upper = edges;
+  for (const Face face : pfv::all_faces) box[face].wall = wall;
+  for (const Face face : open) box[face].boundary = pfv::Boundary::pressure(0.0);
+  return box;
+}
+
+/// Drag on sphere k, over Stokes', when it alone moves; column: along each axis.
+Eigen::Matrix3d drag_of(const pfv::Box& box, pfv::PackingArrays packing, int k, const pfv::Options& by = {}) {
+  pfv::Flow flow(box, viscosity_one(), by);
+  Eigen::Matrix3d drag;
+  for (int axis = 0; axis < 3; ++axis) {
+    packing.velocities.setZero(3, packing.radii.size());
+    packing.velocities(axis, k) = 1.0;
+    drag.col(axis) = -flow.evaluate(packing.view(), 1e-6).total.col(k) / (6.0 * pi * packing.radii[k]);
+  }
+  return drag;
+}
+
+Eigen::Matrix3d drag_alone(const pfv::Box& box, const Eigen::Vector3d& place) {
+  return drag_of(box, packing_of({{place[0], place[1], place[2], radius}}), 0);
+}
+
+Eigen::Vector2d extremes(const Eigen::Matrix3d& drag) {
+  const Eigen::Vector3d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(drag).eigenvalues();
+  return {values[0], values[2]};
+}
+
+const std::vector<std::vector<Face>> tops{{Face::zhi}, {Face::zlo, Face::zhi}, {Face::xlo, Face::xhi},
+                                          {Face::xlo, Face::xhi, Face::zhi}};
+
+TEST(OpenWater, AGrainAloneHasStokesDragWhateverIsFarAway) {
+  Random random(1);
+  for (const auto& open : tops)
+    for (const Wall wall : {Wall::symmetry, Wall::no_slip})
+      for (int place = 0; place < 12; ++place) {
+        const Eigen::Vector3d edges = radius * (Eigen::Vector3d::Constant(350.0) + 150.0 * random.in_cube());
+        const Eigen::Vector3d at = random.in_cube(0.2, 0.8).cwiseProduct(edges);
+        const Eigen::Vector2d drag = extremes(drag_alone(tank(edges, open, wall), at));
+        EXPECT_GT(drag[0], 0.9) << open.size() << ' ' << at.transpose();
+        EXPECT_LT(drag[1], 1.1) << open.size() << ' ' << at.transpose();
+      }
+}
+
+// Drag over Stokes', exact: towards a plane Brenner (1961), Chemical Engineering Science 16, 242-251; along it Goldman,
+// Cox & Brenner (1967), the same 22, 637-651.
+TEST(OpenWater, NearAFloorItHasTheWallsCorrection) {
+  struct Exact {
+    double height, towards, along;
+  };
+  for (const auto& [height, towards, along] :
+       {Exact{10.0677, 1.1252, 1.0591}, {3.7622, 1.4129, 1.1738}, {2.3524, 1.8375, 1.3079}, {1.5431, 3.0361, 1.5675}})
+    for (const auto& open : {std::vector<Face>{Face::zhi}, std::vector<Face>{Face::xlo, Face::zhi}}) {
+      const Eigen::Vector3d edges = radius * Eigen::Vector3d(600.0, 500.0, 400.0);
+      const Eigen::Vector3d at(0.5 * edges[0], 0.5 * edges[1], height * radius);
+      const Eigen::Matrix3d drag = drag_alone(tank(edges, open, Wall::no_slip), at);
+      EXPECT_NEAR(drag(2, 2) / towards, 1.0, 0.05) << height;
+      EXPECT_NEAR(drag(0, 0) / along, 1.0, 0.05) << height;
+      EXPECT_NEAR(drag(1, 1) / along, 1.0, 0.05) << height;
+    }
+}
+
+TEST(OpenWater, TheCorrectionsOfPlanesFadeAndAreBounded) {
+  for (const auto kind : {pfv::PlaneKind::no_slip, pfv::PlaneKind::slip, pfv::PlaneKind::open}) {
+    const auto far = pfv::mobility_beside_plane(kind, 1.0, 1e4), contact = pfv::mobility_beside_plane(kind, 1.0, 1.0),
+               bound = pfv::mobility_beside_plane(kind, 1.0, 1.5);
+    EXPECT_NEAR(far.along, 1.0, 1e-4);
+    EXPECT_NEAR(far.towards, 1.0, 2e-4);
+    EXPECT_EQ(contact.along, bound.along);
+    EXPECT_EQ(contact.towards, bound.towards);
+    EXPECT_GT(contact.towards, 0.2);
+  }
+}
+
+pfv::PackingArrays cloud(int count, double fraction, std::uint64_t seed) {
+  const double r = std::cbrt(fraction / (4.0 / 3.0 * pi * count));
+  return random_packing(count, 0.8 * r, 1.1 * r, seed);
+}
+
+TEST(OpenWater, InACloudEveryGrainIsBrakedAtLeastAsAlone) {
+  for (const double fraction : {1e-4, 0.01, 0.05})
+    for (const Wall wall : {Wall::symmetry, Wall::no_slip}) {
+      const pfv::PackingArrays packing = cloud(60, fraction, 3);
+      for (int k = 0; k < 60; k += 7)
+        EXPECT_GT(extremes(drag_of(tank({1, 1, 1}, {Face::zhi}, wall), packing, k))[0], 0.6) << fraction << ' ' << k;
+    }
+}
+
+TEST(OpenWater, ADenseBedHasNone) {
+  const pfv::PackingArrays bed = pfv::dense_packing(500, 0.6, 0.05);
+  pfv::Options without;
+  without.open_water = false;
+  pfv::PackingArrays moving = bed;
+  Random random(2);
+  moving.velocities.resize(3, bed.radii.size());
+  for (int k = 0; k < bed.radii.size(); ++k) moving.velocities.col(k) = random.in_cube();
+  for (const Wall wall : {Wall::symmetry, Wall::no_slip}) {
+    pfv::Flow with(upward_box(wall), viscosity_one()), off(upward_box(wall), viscosity_one(), without);
+    const Eigen::Matrix3Xd forces = with.evaluate(moving.view(), 1e-3).total;
+    EXPECT_EQ(forces, off.evaluate(moving.view(), 1e-3).total);
+    EXPECT_EQ(with.report().counts.open_water, 0);
+  }
+}
+
+/// Spheres of one size at random in a periodic cube, a solid fraction c of it.
+pfv::PackingArrays periodic_cloud(int count, double fraction, std::uint64_t seed) {
+  const double r = std::cbrt(fraction / (4.0 / 3.0 * pi * count));
+  Random random(seed);
+  std::vector<Sphere> placed;
+  while (static_cast<int>(placed.size()) < count) {
+    const Eigen::Vector3d x = random.in_cube(0.0, 1.0);
+    const bool free = std::all_of(placed.begin(), placed.end(), [&](const Sphere& s) {
+      Eigen::Vector3d apart = x - Eigen::Vector3d(s.x, s.y, s.z);
+      apart -= apart.array().round().matrix();
+      return apart.norm() > 2.0 * r;
+    });
+    if (free) placed.push_back({x[0], x[1], x[2], r});
+  }
+  return packing_of(placed);
+}
+
+/// Mean over the spheres of how fast one moves under a force on it alone, the others free, over Stokes'.
+double own_mobility(const pfv::PackingArrays& of, bool shear) {
+  pfv::PackingArrays packing = of;
+  const Eigen::Index size = 3 * of.radii.size();
+  pfv::Box box;
+  box.periodic = {true, true, true};
+  pfv::Options by;
+  by.shear_viscous = shear;
+  pfv::Flow flow(box, viscosity_one(), by);
+  Eigen::MatrixXd drag(size, size);
+  for (Eigen::Index c = 0; c < size; ++c) {
+    packing.velocities.setZero(3, of.radii.size());
+    packing.velocities(c % 3, c / 3) = 1.0;
+    drag.col(c) = -flow.evaluate(packing.view(), 1e-6).total.reshaped() / (6.0 * pi * of.radii[0]);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(0.5 * (drag + drag.transpose()));
+  double sum = 0.0;  // but for what all do together
+  for (const double value : parts.eigenvalues())
+    if (value > 1e-8) sum += 1.0 / value;
+  return sum / static_cast<double>(size);
+}
+
+// Short-time self-diffusion over that of a sphere alone: Ladd (1990), Journal of Chemical Physics 93, 3484-3494, and
+// 1 - 1.83 c (Batchelor 1976) where dilute. Without shear forces grains that move past each other meet next to no
+// resistance: the mobility is 10 to 40 times that.
+TEST(OpenWater, WithShearForcesTheMobilityOfGrainsInACloudIsThatOfASuspension) {
+  struct Reference {
+    double fraction, mobility;
+  };
+  for (const auto& [fraction, mobility] : {Reference{0.01, 0.98}, {0.1, 0.82}, {0.2, 0.65}, {0.3, 0.48}}) {
+    EXPECT_NEAR(own_mobility(periodic_cloud(40, fraction, 1), true) / mobility, 1.0, 0.2) << fraction;
+    if (fraction > 0.15) {
+      EXPECT_GT(own_mobility(periodic_cloud(40, fraction, 1), false), 4.0 * mobility) << fraction;
+    }
+  }
+}
+
+TEST(OpenWater, SaysHowManyGrainsItBrakes) {
+  pfv::Flow flow(tank({1, 1, 1}, {Face::zhi}, Wall::symmetry), viscosity_one());
+  pfv::PackingArrays packing = cloud(20, 1e-3, 1);
+  packing.velocities = Eigen::Matrix3Xd::Constant(3, 20, 1.0);
+  flow.evaluate(packing.view(), 1e-3);
+  EXPECT_EQ(flow.report().counts.open_water, 20);
+}
+
+/// A cloud of 40 in open water, its faces moving with the container's.
+struct Cloud {
+  pfv::PackingArrays packing = cloud(40, 0.01, 5);
+  pfv::Box box = tank({1, 1, 1}, {Face::zhi}, Wall::no_slip);
+  pfv::Flow flow{box, viscosity_one()};
+
+  Eigen::Matrix3Xd forces(const Eigen::Matrix3Xd& velocities) {
+    packing.velocities = velocities;
+    return flow.evaluate(packing.view(), 1e-3).total;
+  }
+  Eigen::Matrix3Xd motion(std::uint64_t seed) const {
+    Random random(seed);
+    Eigen::Matrix3Xd v(3, packing.radii.size());
+    for (int k = 0; k < v.cols(); ++k) v.col(k) = random.in_cube();
+    return v;
+  }
+};
+
+TEST(OpenWater, ActionsAndReactionsBalance) {
+  Cloud run;
+  Eigen::Vector3d sum = run.forces(run.motion(1)).rowwise().sum();
+  const double scale = run.flow.forces().total.colwise().norm().sum();
+  for (const auto& face : run.flow.face_forces()) sum += face;
+  EXPECT_LT(sum.norm(), 1e-12 * scale);
+}
+
+TEST(OpenWater, ResistsReciprocallyAndFeedsNoMotion) {
+  Cloud run;
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    const Eigen::Matrix3Xd one = run.motion(seed), other = run.motion(seed + 100);
+    const Eigen::Matrix3Xd by_one = run.forces(one), by_other = run.forces(other);
+    const double power = -by_one.cwiseProduct(one).sum();
+    EXPECT_GT(power, 0.0);
+    EXPECT_NEAR(by_one.cwiseProduct(other).sum(), by_other.cwiseProduct(one).sum(), 1e-10 * power);
+  }
+}
+
+TEST(OpenWater, ATranslationOfEverythingMeetsNoResistance) {
+  Cloud run;
+  for (const Face face : pfv::all_faces) {
+    const int axis = static_cast<int>(face) / 2;
+    (axis == 2 ? run.box[face].velocity : run.box[face].sliding[2]) = 0.3;
+  }
+  run.flow.set_box(run.box);
+  const double alone = 6.0 * pi * run.packing.radii.maxCoeff();
+  const Eigen::Matrix3Xd up = Eigen::Vector3d(0.0, 0.0, 0.3).replicate(1, 40);
+  EXPECT_LT(run.forces(up).colwise().norm().maxCoeff(), 1e-9 * alone);
+}
+
+/// A grain that falls from rest in a tank, under its weight less its lift.
+struct Falling {
+  pfv::PackingArrays packing = packing_of({{0.05, 0.04, 0.06, radius}});
+  pfv::Flow flow{tank({0.1, 0.1, 0.1}, {Face::zhi}, Wall::symmetry), viscosity_one()};
+  Eigen::VectorXd mass = Eigen::VectorXd::Constant(1, 2600.0 * 4.0 / 3.0 * pi * radius * radius * radius);
+  Eigen::Matrix3Xd weight = Eigen::Vector3d(1e-5, 0.0, -2e-5);
+  std::vector<pfv::Piston> pistons = std::vector<pfv::Piston>(6);
+
+  Falling() { packing.velocities.setZero(3, 1); }
+  double time() const { return mass[0] / (6.0 * pi * radius); }  ///< of Stokes' drag
+  Eigen::Vector3d ends() const { return weight / (6.0 * pi * radius); }
+  Eigen::Vector3d after(Coupling coupling, double dt, int steps) {
+    const pfv::GrainDynamics dynamics{{mass.data(), 1}, {weight.data(), 3, 1}, pistons};
+    for (int step = 0; step < steps; ++step) {
+      const pfv::Forces& forces = coupling == Coupling::explicit_step
+                                      ? flow.step(packing.view(), dt)
+                                      : flow.advance(packing.view(), dt, pfv::Step::with(coupling, dynamics));
+      packing.velocities += dt * (forces.total + weight) / mass[0];
+    }
+    return packing.velocities;
+  }
+};
+
+TEST(OpenWater, FallsAsFastInLongStepsAsInShortOnes) {
+  for (const auto& [coupling, part, steps] :
+       {std::tuple{Coupling::explicit_step, 0.1, 100}, {Coupling::staged, 20.0, 6}, {Coupling::implicit, 20.0, 20}}) {
+    Falling run;
+    const Eigen::Vector3d v = run.after(coupling, part * run.time(), steps);
+    EXPECT_NEAR(v[0] / run.ends()[0], 1.0, 0.06) << static_cast<int>(coupling);
+    EXPECT_NEAR(v[2] / run.ends()[2], 1.0, 0.06) << static_cast<int>(coupling);
+  }
+}
+
+TEST(OpenWater, ItsLimitIsThatOfStokesDrag) {
+  Falling run;
+  run.flow.evaluate(run.packing.view(), 1.0);
+  EXPECT_NEAR(run.flow.time_step_limit(run.mass, run.pistons) / (2.0 * run.time()), 1.0, 0.06);
+}
+
+}  // namespace
