@@ -16,24 +16,25 @@ import scene
 from plotting import plt, save_figure
 
 KEYS = {
-    "N": (int, 400, "beads"),
+    "N": (int, 150, "beads"),
     "VISCOSITY": (float, 0.1, "Pa s"),
     "MU": (float, 0.4, "friction of beads and walls"),
     "WIDTH": (float, 8.0, "period along y, in radii"),
     "RISE": (float, 1.5, "height of the column over its foot, about"),
-    "END": (float, 2.0, "duration of the runs in the fluid, s"),
+    "END": (float, 0.3, "duration of the runs in the fluid, s"),
+    "TOPS": (str, "low,high,closed,no_slip,extent", "what is above, of these"),
+    "SHEAR": (str, "yes", "shear_viscous: yes or no"),
     "SEED": scene.SEED,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS = 1e-3, 200.0  # m, N/m
 DENSITY, GRAVITY = 2500.0, 9.81
 STEP = 0.2 * math.sqrt(DENSITY * 4.0 / 3.0 * math.pi * RADIUS**3 / STIFFNESS)  # of in.beads
-# what is above: plane at so many heights of the column; the words of the face behind `face zhi`
-TOPS = {"low": ("plane {low:.17g} symmetry pressure 0", "open, 1.3 heights"),
-        "high": ("plane {high:.17g} symmetry pressure 0", "open, 3 heights"),
-        "closed": ("plane {high:.17g} symmetry point 0 0 0 pressure 0", "closed, 3 heights"),
-        "no_slip": ("plane {high:.17g} point 0 0 0 pressure 0", "closed, no slip, 3 heights"),
-        "extent": ("extent pressure 0", "follows the highest bead")}
+# what is above, the words behind `face zhi`: open planes at 1.3 and 3 heights of the column, closed ones, and one that
+# follows the highest bead
+TOPS = {"low": "plane {low:.17g} symmetry pressure 0", "high": "plane {high:.17g} symmetry pressure 0",
+        "closed": "plane {high:.17g} symmetry point 0 0 0 pressure 0",
+        "no_slip": "plane {high:.17g} point 0 0 0 pressure 0", "extent": "extent pressure 0"}
 
 
 def run(name, settings, geometry, top):
@@ -44,7 +45,7 @@ def run(name, settings, geometry, top):
     said, cpu = scene.liggghts(
         SCENE, "in.column_collapse",
         {"N": settings["N"], "r": RADIUS, "kn": STIFFNESS, "mu": settings["MU"], "viscosity": settings["VISCOSITY"],
-         "wet": int(wet), "top": top or "none", "settle": 20000, "steps": steps, "every": max(1, steps // 200), "out": out,
+         "wet": int(wet), "top": top or "none", "more": f"shear_viscous {settings['SHEAR']}", "settle": 20000, "steps": steps, "every": max(1, steps // 200), "out": out,
          "a": geometry["a"], "W": geometry["W"], "L": geometry["L"], "H": geometry["high"],
          **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},
         out + "_run", scene.Progress(name, 0, steps, STEP))
@@ -70,13 +71,16 @@ def work(words):
     settings = scene.parse(words, KEYS)
     if settings["N"] < 100 or min(settings["VISCOSITY"], settings["END"], settings["RISE"]) <= 0 or settings["WIDTH"] < 6:
         raise scene.BadSetting("N must be at least 100, WIDTH 6; VISCOSITY, END and RISE above 0")
+    tops = settings["TOPS"].split(",")
+    if not set(tops) <= set(TOPS) or settings["SHEAR"] not in ("yes", "no"):
+        raise scene.BadSetting(f"TOPS are {', '.join(TOPS)}, with commas between them; SHEAR is yes or no")
     width = settings["WIDTH"] * RADIUS
     section = settings["N"] * 4.0 / 3.0 * math.pi * RADIUS**3 / 0.57 / width  # m2, of the column
     a = math.sqrt(section / settings["RISE"])
     height = settings["RISE"] * a
     geometry = {"a": a, "W": width, "L": 6.0 * a, "low": 1.3 * height, "high": 3.0 * height}
     runs = [run("dry", settings, geometry, None)]
-    runs += [run(name, settings, geometry, top.format(**geometry)) for name, (top, _) in TOPS.items()]
+    runs += [run(name, settings, geometry, TOPS[name].format(**geometry)) for name in tops]
     print(f"\nColumn collapse: {settings['N']} beads, foot {1e3 * a:.3g} mm, height {1e3 * height:.3g} mm")
     for found in runs:
         print(f"  {found['name']:<8s} run-out {found['run_out']:.3f}, mean way {found['moved']:.4f} of the foot, half of it after "
