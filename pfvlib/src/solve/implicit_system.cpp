@@ -132,16 +132,6 @@ std::vector<double> freed_pins(const PressureSystem& system, const Unknowns& unk
 
 }  // namespace
 
-ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
-                                 const ForceMatrix& forces, const Bases& bases,
-                                 const Matrix6Xd& yielding) {
-  const YieldingRows rows = yielding_rows(unknowns, forces, bases, yielding);
-  ImplicitSystem result;
-  const std::vector<double> pins = freed_pins(system, unknowns, rows, result.isolated);
-  result.matrix = sum_of(system.matrix, pins, rows);
-  return result;
-}
-
 Matrix6Xd of_faces(Matrix6Xd yielding, int spheres) {
   yielding.leftCols(spheres).setZero();
   return yielding;

@@ -67,7 +67,8 @@ void ShearedImplicit::factor(const StepTask& task, Matrix6Xd yielding) {
   {
     const PhaseClock clock(work.seconds.assemble);
     factor_->system = assemble_sheared(built.kept.system, built.unknowns, *built.operators.force_matrix, built.bases,
-                                       yielding, *built.operators.shear_pairs, problem.fluid.viscosity);
+                                       yielding, built.operators.shear_pairs.value_or(std::vector<ShearPair>()),
+                                       problem.fluid.viscosity);
   }
   const ShearedSystem& system = factor_->system;
   if (!factor_->solver || system.matrix.row_begin != old.row_begin || system.matrix.column != old.column ||
