@@ -160,9 +160,9 @@ void compare(int spheres) {
     row(spheres, std::string("A,") + name_of(kind), a, a_made, found, 0.0);
     if (!first) first = found;
   }
-  ShearedSystem k;
+  ImplicitSystem k;
   const double k_made = milliseconds([&] {
-    k = assemble_sheared(scene.system, scene.unknowns, scene.forces, scene.bases, yielding, {}, 1.0);
+    k = assemble_implicit(scene.system, scene.unknowns, scene.forces, scene.bases, yielding, {}, 1.0);
   });
   Eigen::Matrix3Xd places(3, k.matrix.size());
   places.leftCols(count) = scene.places;

@@ -139,7 +139,7 @@ Matrix6Xd of_faces(Matrix6Xd yielding, int spheres) {
 
 namespace {
 
-using Velocity = ShearedSystem::Velocity;
+using Velocity = ImplicitSystem::Velocity;
 
 /// M/dt + R, row by row.
 using SparseRows = std::vector<std::map<int, double>>;
@@ -214,11 +214,11 @@ std::vector<int> begins_of(const std::vector<Velocity>& velocities) {
 
 }  // namespace
 
-ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
+ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
                                const Bases& bases, const Matrix6Xd& yielding,
                                const std::vector<ShearPair>& pairs, double viscosity) {
   const int spheres = forces.spheres;
-  ShearedSystem result;
+  ImplicitSystem result;
   result.pressures = unknowns.count;
   result.velocities = unknown_velocities(yielding, spheres);
   const std::vector<double> pins =

@@ -20,7 +20,7 @@ namespace pfv {
 /// R: of shear forces -R v, which join the velocities of neighbours. S_f, B_f: of the faces, which are eliminated.
 /// Quasi-definite: L D L^T exists in any order. Grains could be eliminated as well where there is no R, which
 /// leaves G + S^T B S; but that joins all pores around a sphere, and its factor has 1.4 times as many entries.
-struct ShearedSystem {
+struct ImplicitSystem {
   struct Velocity {
     int grain, component;  ///< column and row of a Motion: 0-2 velocity, 3-5 spin
   };
@@ -38,11 +38,11 @@ struct ShearedSystem {
 /// `system`: G with storage. `forces`: S, to which the pressures on the faces come. `yielding`: the diagonal of
 /// B, dt over mass (s/kg) or inertia (s/(kg m²)) for each row of S, 0 for what no force moves. `pairs` and
 /// `viscosity`: R.
-ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
+ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
                                const Bases& bases, const Matrix6Xd& yielding,
                                const std::vector<ShearPair>& pairs, double viscosity);
 
-/// Of the faces alone: what is eliminated from a sheared system.
+/// Of the faces alone: what is eliminated.
 Matrix6Xd of_faces(Matrix6Xd yielding, int spheres);
 
 }  // namespace pfv

@@ -38,12 +38,12 @@ void ImplicitStep::find(const StepTask& task, Solution& solution) {
   refuse_undetermined(problem, solution.moving);
   make_force_matrices(built, problem, work.counts);
   make_volume_rates(built, problem, work.counts);
-  sheared_.factor(task, forced.yielding);
+  joint_.factor(task, forced.yielding);
   solution.relative_pressures.setZero(built.network.pores());
   impose(built, solution);
   forced.held = held_loads(task, solution);  // with the reference pressure just set
-  sheared_.solve(task, forced, solution);
-  refuse_isolated(built, solution, sheared_.isolated());
+  joint_.solve(task, forced, solution);
+  refuse_isolated(built, solution, joint_.isolated());
 }
 
 }  // namespace pfv

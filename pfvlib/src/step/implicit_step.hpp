@@ -2,7 +2,7 @@
 #pragma once
 
 #include "step/long_step.hpp"
-#include "step/sheared_implicit.hpp"
+#include "step/implicit_solve.hpp"
 
 namespace pfv {
 
@@ -12,14 +12,14 @@ class ImplicitStep final : public StepScheme {
   void check(const Problem& problem) const override;
   double direction() const override { return 1.0; }
   void find(const StepTask& task, Solution& solution) override;
-  void forget_network() override { sheared_.forget_network(); }
-  void forget_factor() override { sheared_.forget_factor(); }
+  void forget_network() override { joint_.forget_network(); }
+  void forget_factor() override { joint_.forget_factor(); }
 
   /// |b - K x| / |b| of the last solve.
-  double residual() const { return sheared_.residual(); }
+  double residual() const { return joint_.residual(); }
 
  private:
-  ShearedImplicit sheared_;
+  ImplicitSolve joint_;
 };
 
 }  // namespace pfv
