@@ -19,8 +19,8 @@ KEYS = {
     "ACROSS": (int, 10, "grains across the box; 20 as in the example"),
     "TIME": (float, 1.0, "simulated time, s"),
     "EVERY": (int, 100, "steps between two looks at the porosity, darcy_grid"),
-    "RETRIANGULATE": (str, "0.05", "pore strain, or 'mean STRAIN', pfv"),
-    "COUPLE": (int, 10, "time steps between two flow steps"),
+    "PFV": (str, "", "further words of fix pfv for the pores, as 'couple_every 10 retriangulate 0.05'"),
+    "COUPLE": (int, 10, "time steps between two flow steps, darcy_grid"),
     "DRAG": (str, "di_felice", "di_felice or kozeny_carman, darcy_grid"),
     "FLUX": (float, 1e-5, "inflow, m3/s"),
     "VISCOSITY": (float, 1e-3, "Pa s"),
@@ -48,13 +48,11 @@ def time_step(across):
 
 def run_model(model, settings):
     """One run; returns what it says of itself."""
-    # the law that the figures of README.md were measured with
-    words = f"pfv conductance hydraulic_radius retriangulate {settings['RETRIANGULATE']}"
+    words = f"pfv {settings['PFV']}"
     if model == "darcy_grid":
         cells = " ".join(map(str, CELLS))
         looks = max(1, settings["EVERY"] // settings["COUPLE"])  # of fix pfv: in flow steps
-        words = f"darcy_grid {cells} every {looks} drag {settings['DRAG']}"
-    words += f" couple_every {settings['COUPLE']}"
+        words = f"darcy_grid {cells} every {looks} drag {settings['DRAG']} couple_every {settings['COUPLE']}"
     step = time_step(settings["ACROSS"])
     steps = 100 * max(1, round(settings["TIME"] / step / 100))
     out = f"{settings['OUT']}_{model}"

@@ -86,8 +86,7 @@ class Refusals(CoupledTest):
         self.refuse(WATER + " couple_every auto rebuild_lag 5", "couple_every auto", "rebuild_lag", after="")
 
     def test_what_implicit_steps_have_not(self):
-        self.refuse(FLOW + " shear_viscous yes coupling implicit solver cholmod", "shear", "solver supernodal", "staged",
-                    after="")
+        self.refuse(FLOW + " coupling implicit solver cholmod", "cholmod", "solver supernodal", "staged", after="")
         self.refuse(FLOW + " volume_rates geometric coupling implicit", "volume_rates", "explicit", after="")
 
     def test_ordering(self):

@@ -19,6 +19,7 @@ struct Host {
   std::function<double(double)> load;
   int most = any, solves = 0;
   double last = 0.0;  // step of the last solve
+  double answer = 0.0;
 
   explicit Host(std::function<double(double)> f) : load(std::move(f)) {}
 
@@ -29,7 +30,7 @@ struct Host {
     std::vector<Eigen::Vector3d> faces(6);
     std::fill(faces.begin(), faces.end(), Eigen::Vector3d::Zero());
     faces[5] = Eigen::Vector3d(0.0, 0.0, mean);
-    interval.take(ids, forces, faces, steps, 1.0, 1.0, 0.1, most);
+    interval.take(ids, forces, faces, steps, 1.0, 1.0, 0.1, most, false, answer);
     ++solves;
   }
   /// The load of a solve is that of the middle of its interval, as with mean velocities.
@@ -82,6 +83,35 @@ TEST(SolveInterval, NoiseIsHeldAndNotFollowed) {
   noisy.run(3000);
   EXPECT_GT(noisy.interval.steps(), 1);
   EXPECT_EQ(noisy.interval.held().slope.norm(), 0.0);
+}
+
+/// A load that swings from solve to solve by a part of the load of 1.
+Host swinging_by(double part, double answer) {
+  Host host([part, sign = 1](double) mutable { return 0.5 + 0.5 * part * (sign = -sign); });
+  host.answer = answer;
+  host.run(3000);
+  return host;
+}
+
+TEST(SolveInterval, WhatComesAndGoesBeforeGrainsAnswerIsNoError) {
+  constexpr double part = tolerance, answer = 200.0;
+  EXPECT_EQ(swinging_by(part, 0.0).interval.steps(), 1);
+  const Host host = swinging_by(part, answer);
+  EXPECT_GT(host.interval.steps(), 10);
+  EXPECT_LT(host.interval.error(), tolerance);
+  // but for what is many times the tolerance
+  EXPECT_EQ(swinging_by(20.0 * tolerance, answer).interval.steps(), 1);
+}
+
+TEST(SolveInterval, WhatLastsIsAnErrorHoweverSlowlyGrainsAnswer) {
+  Host at_once([](double t) { return 0.5 + 4e-5 * t; }), slowly = at_once;
+  slowly.answer = 200.0;
+  for (Host* host : {&at_once, &slowly}) {
+    host->most = 1;  // held, not continued
+    host->run(2000);
+  }
+  EXPECT_GT(at_once.interval.error(), 5e-5);
+  EXPECT_NEAR(slowly.interval.error(), at_once.interval.error(), 0.1 * at_once.interval.error());
 }
 
 TEST(SolveInterval, ANewNetworkIsNoChangeInTime) {

@@ -159,7 +159,7 @@ struct Options {
   bool buoyancy = true;       ///< add -density V gravity to each sphere where there is gravity
   bool sphere_pressure = false;  ///< also the mean pressure around each sphere
   bool shear_viscous = false;  ///< add the shear viscous forces of sliding neighbours (Catalano 2012 eqs.
-                               ///< 6.29-6.30); implicit steps with them: solver supernodal
+                               ///< 6.29-6.30)
   /// Spheres in open water, few in large pores, are braked at least as in unbounded fluid (doc/open_water.md). With
   /// reciprocal rates; nothing in a dense bed.
   bool open_water = true;

@@ -23,8 +23,10 @@ struct HeldLoads {
 /// the same. A run begins with `restart`.
 ///
 /// The error of a solve is what its loads differ by from those that had been expected in the middle of its
-/// interval: on the faces, the largest, over the largest load on a face; on the grains, the root mean square,
-/// over the largest of that of the loads themselves and what that load is on a grain's cross-section.
+/// interval, as a mean that fades with the time in which grains answer a load: an error that comes and goes within
+/// it, as where grains bounce, moves nothing. It is no less than a tenth of the last solve's alone. On the faces it
+/// is the largest, over the largest load on a face; on the grains, the root mean square, over the largest of that of
+/// the loads themselves and what that load is on a grain's cross-section.
 class SolveInterval {
  public:
   /// `tolerance` > 0: of the load, 1 is all of it.
@@ -36,10 +38,11 @@ class SolveInterval {
   /// fluid's; `face_area` (m²): the largest; `section` (m²): mean cross-section of the grains; `most`:
   /// steps that loads may be held at most, >= 1, half as many if they go on: a trend turns a delay into growth
   /// sooner. `ids`: of the grains; another set begins anew. `new_network`: the first solve on it, whose loads
-  /// differ from the last by no change in time alone: the interval stays.
+  /// differ from the last by no change in time alone: the interval stays. `answer`: steps in which the velocities
+  /// of the grains follow a load, over which errors are means; 0: each counts by itself.
   void take(const Packing::Ids& ids, const Forces& forces,
             const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
-            double face_area, double section, int most, bool new_network = false);
+            double face_area, double section, int most, bool new_network = false, double answer = 0.0);
 
   /// The loads of the same instant on another network, right after `take`: from here on they are held, and
   /// what the last solve said of the change in time stays.
@@ -58,8 +61,18 @@ class SolveInterval {
   struct Errors {
     double held, continued;
   };
+  /// What loads differ by from what had been expected.
+  struct Difference {
+    Eigen::Matrix3Xd grains;
+    std::vector<Eigen::Vector3d> faces;
+  };
+  struct Scales {
+    double face, grain;  ///< N
+  };
+  static double size_of(const Difference& difference, const Scales& scales);
+  static double error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales);
   Errors errors_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces,
-                   double face_scale, double grain_scale, double apart) const;
+                   const Scales& scales, double apart, double weight);
   void choose(Errors errors, int most);
 
   double tolerance_;
@@ -67,6 +80,7 @@ class SolveInterval {
   int steps_ = 1, last_steps_ = 1;
   double error_ = 0.0, largest_error_ = 0.0, change_ = 0.0, share_ = 0.0;
   Errors memory_{0.0, 0.0};  ///< of the errors over the steps, or their square: it fades
+  Difference missed_held_, missed_continued_;  ///< means; empty where none is known
   Packing::Ids ids_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> last_, trend_;  ///< loads, and their change a step
   std::vector<Eigen::Vector3d> last_faces_, face_trend_;

@@ -139,7 +139,7 @@ Report Flow::report() const {
   add_account(report, parts_->memory, built, parts_->fluid, solution);
   if (parts_->forces.total.cols() > 0) report.force_sum = parts_->forces.total.rowwise().sum();
   report.residual = solution.implicit
-                        ? parts_->schemes.implicit().residual(solution)
+                        ? parts_->schemes.implicit().residual()
                         : relative_residual(built.kept.system.matrix, solution.unknown_pressures, solution.right_side);
   report.counts = parts_->work.counts;
   report.seconds = parts_->work.seconds;

@@ -35,7 +35,7 @@ bool may_be_implicit(const Settings& s) {
 
 struct Rule {
   bool (*broken)(const Settings&);
-  const char* message;  ///< {solver}: the one that is used; {background}, {implicit}, {quasi_definite}: those that can do it
+  const char* message;  ///< {solver}: the one that is used; {background}, {implicit}: those that can do it
 };
 
 // Broken by what was said: the message says which of the two to change.
@@ -50,15 +50,11 @@ const Rule rules[]{
     {[](const Settings& s) { return s.options.rebuild_lag > 0 && may_be_implicit(s); },
      "implicit steps factor a matrix with the masses of the grains, which is not done in the background: use "
      "`coupling explicit` or `coupling staged`, or set rebuild_lag to 0"},
-    {[](const Settings& s) { return may_be_implicit(s) && !abilities_of(s.options.solver).implicit_steps; },
-     "the solver {solver} solves no implicit steps: use the solver {implicit}, or `coupling explicit` or `coupling "
-     "staged`"},
     {[](const Settings& s) {
-       return s.options.shear_viscous && s.steps.coupling == Coupling::implicit &&
-              !abilities_of(s.options.solver).quasi_definite;
+       return s.steps.coupling == Coupling::implicit && !abilities_of(s.options.solver).implicit_steps;
      },
-     "the solver {solver} solves no implicit steps with shear viscous forces, whose matrix is indefinite: use the "
-     "solver {quasi_definite}, `coupling staged`, or leave shear_viscous away"},
+     "the solver {solver} solves no implicit steps, whose matrix is indefinite: use the solver {implicit}, or "
+     "`coupling explicit` or `coupling staged`"},
     {[](const Settings& s) {
        return s.options.volume_rates == VolumeRates::geometric &&
               s.steps.coupling != Coupling::explicit_step;
@@ -107,7 +103,6 @@ std::string filled(std::string message, const Settings& settings) {
   const std::pair<std::string, std::string> blanks[]{
       {"{solver}", name_of(resolved(settings.options.solver))},
       {"{background}", solvers_with(&SolverAbilities::factors_beside_steps)},
-      {"{quasi_definite}", solvers_with(&SolverAbilities::quasi_definite)},
       {"{implicit}", solvers_with(&SolverAbilities::implicit_steps)}};
   for (const auto& [blank, text] : blanks)
     if (const std::size_t at = message.find(blank); at != std::string::npos)

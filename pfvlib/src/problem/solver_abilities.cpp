@@ -26,23 +26,19 @@ using Ordering = OrderingKind;
 // calls MPI (mumps, amg), which a host may have started for one thread.
 constexpr SolverAbilities table[] = {
     // solver, built, analysed, factored, solved by; own ordering; takes orderings, shares work,
-    // factors beside steps, mixed precision, implicit steps, those with shear forces, iterative, tolerance
-    {Solver::supernodal, true, "CHOLMOD", "pfv", "pfv", Ordering::geometric, true, true, true, true, true, true, false,
-     0.0},
-    {Solver::cholmod, true, "CHOLMOD", "CHOLMOD", "CHOLMOD", Ordering::geometric, true, false, false, false, true,
-     false, false, 0.0},
-    {Solver::tacho, true, "Tacho", "Tacho", "Tacho", Ordering::metis, true, false, false, false, true, false, false,
-     0.0},
-    {Solver::klu2, true, "KLU2", "KLU2", "KLU2", Ordering::amd, false, false, false, false, true, false, false,
-     0.0},
-    {Solver::mumps, has_mumps, "MUMPS", "MUMPS", "MUMPS", Ordering::automatic, false, false, false, false, true, false,
+    // factors beside steps, mixed precision, implicit steps, iterative, tolerance
+    {Solver::supernodal, true, "CHOLMOD", "pfv", "pfv", Ordering::geometric, true, true, true, true, true, false, 0.0},
+    {Solver::cholmod, true, "CHOLMOD", "CHOLMOD", "CHOLMOD", Ordering::geometric, true, false, false, false, false,
+     false, 0.0},
+    {Solver::tacho, true, "Tacho", "Tacho", "Tacho", Ordering::metis, true, false, false, false, false, false, 0.0},
+    {Solver::klu2, true, "KLU2", "KLU2", "KLU2", Ordering::amd, false, false, false, false, false, false, 0.0},
+    {Solver::mumps, has_mumps, "MUMPS", "MUMPS", "MUMPS", Ordering::automatic, false, false, false, false, false,
      false, 0.0},
     {Solver::amg, true, nullptr, "hypre's BoomerAMG", "pfv", Ordering::automatic, false, false, false, false, false,
-     false, true, 1e-7},
-    {Solver::cg, true, nullptr, "pfv", "pfv", Ordering::automatic, false, false, true, false, true, false, true,
+     true, 1e-7},
+    {Solver::cg, true, nullptr, "pfv", "pfv", Ordering::automatic, false, false, true, false, false, true, 1e-10},
+    {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, false, true,
      1e-10},
-    {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, true, false,
-     true, 1e-10},
 };
 
 /// Who makes an ordering for a solver.

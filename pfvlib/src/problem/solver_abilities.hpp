@@ -20,8 +20,7 @@ struct SolverAbilities {
   bool shares_work;           ///< threads share factorisation and solves
   bool factors_beside_steps;  ///< networks may be rebuilt in the background
   bool mixed_precision;
-  bool implicit_steps;  ///< solves the matrix of implicit steps, whose entries have any sign
-  bool quasi_definite;  ///< and that of implicit steps with shear forces, which is indefinite
+  bool implicit_steps;  ///< solves the matrix of implicit steps, which is quasi-definite
   bool is_iterative;    ///< ends at a tolerance
   double tolerance;     ///< where an iterative solver ends where none is said; 0 for the others
 };

@@ -132,16 +132,6 @@ std::vector<double> freed_pins(const PressureSystem& system, const Unknowns& unk
 
 }  // namespace
 
-ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
-                                 const ForceMatrix& forces, const Bases& bases,
-                                 const Matrix6Xd& yielding) {
-  const YieldingRows rows = yielding_rows(unknowns, forces, bases, yielding);
-  ImplicitSystem result;
-  const std::vector<double> pins = freed_pins(system, unknowns, rows, result.isolated);
-  result.matrix = sum_of(system.matrix, pins, rows);
-  return result;
-}
-
 Matrix6Xd of_faces(Matrix6Xd yielding, int spheres) {
   yielding.leftCols(spheres).setZero();
   return yielding;
@@ -149,7 +139,7 @@ Matrix6Xd of_faces(Matrix6Xd yielding, int spheres) {
 
 namespace {
 
-using Velocity = ShearedSystem::Velocity;
+using Velocity = ImplicitSystem::Velocity;
 
 /// M/dt + R, row by row.
 using SparseRows = std::vector<std::map<int, double>>;
@@ -216,11 +206,11 @@ std::vector<int> begins_of(const std::vector<Velocity>& velocities) {
 
 }  // namespace
 
-ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
+ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
                                const Bases& bases, const Matrix6Xd& yielding,
                                const std::vector<ResistanceBlock>& resistance) {
   const int spheres = forces.spheres;
-  ShearedSystem result;
+  ImplicitSystem result;
   result.pressures = unknowns.count;
   result.velocities = unknown_velocities(yielding, spheres);
   const std::vector<double> pins =

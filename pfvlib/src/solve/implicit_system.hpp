@@ -12,30 +12,15 @@
 
 namespace pfv {
 
-/// A = G + S^T B S, symmetric positive definite: pressures that know how the grains yield to them
-/// within a time step. The pattern joins all pores around a sphere, or on a face, that yields: 60 to 80
-/// entries a row.
-struct ImplicitSystem {
-  SymmetricMatrix matrix;
-  /// Sets of pores without a way to a pressure that are still held at the reference pressure. One that
-  /// can push a yielding grain away needs none: its pressure is what keeps its volume.
-  std::vector<Isolated> isolated;
-};
-
-/// `system`: G with storage. `forces`: S, to which the pressures on the faces come. `yielding`: the diagonal of
-/// B, dt over mass (s/kg) or inertia (s/(kg m²)) for each row of S, 0 for what no force moves.
-ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
-                                 const ForceMatrix& forces, const Bases& bases,
-                                 const Matrix6Xd& yielding);
-
-/// The same step where forces -R v, of shear or in open water, join the velocities of neighbours: (M/dt + R)^-1 is full, so that what the
-/// grains yield by stays unknown beside the pressures:
+/// Pressures p and what the velocities of the grains gain in a time step, u, found together:
 ///
 ///     [ -(G + S_f^T B_f S_f)   -S^T     ] [p]   [-b]
 ///     [ -S                     M/dt + R ] [u] = [ f]
 ///
-/// S_f, B_f: of the faces. Quasi-definite: L D L^T exists in any order.
-struct ShearedSystem {
+/// R: of shear forces -R v, which join the velocities of neighbours. S_f, B_f: of the faces, which are eliminated.
+/// Quasi-definite: L D L^T exists in any order. Grains could be eliminated as well where there is no R, which
+/// leaves G + S^T B S; but that joins all pores around a sphere, and its factor has 1.4 times as many entries.
+struct ImplicitSystem {
   struct Velocity {
     int grain, component;  ///< column and row of a Motion: 0-2 velocity, 3-5 spin
   };
@@ -43,17 +28,21 @@ struct ShearedSystem {
   std::vector<double> signs;  ///< of the pivots: -1 of the pressures, which come first, 1 of the velocities
   int pressures = 0;
   std::vector<Velocity> velocities;
-  std::vector<Isolated> isolated;  ///< as of ImplicitSystem
+  /// Sets of pores without a way to a pressure that are still held at the reference pressure. One that
+  /// can push a yielding grain away needs none: its pressure is what keeps its volume.
+  std::vector<Isolated> isolated;
   /// Pressures that nothing but grains determines: their pivots come after those of the grains.
   std::vector<int> last;
 };
 
-/// `resistance`: R, among spheres.
-ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
+/// `system`: G with storage. `forces`: S, to which the pressures on the faces come. `yielding`: the diagonal of
+/// B, dt over mass (s/kg) or inertia (s/(kg m²)) for each row of S, 0 for what no force moves. `resistance`: R,
+/// among spheres.
+ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
                                const Bases& bases, const Matrix6Xd& yielding,
                                const std::vector<ResistanceBlock>& resistance);
 
-/// Of the faces alone: what is eliminated from a sheared system.
+/// Of the faces alone: what is eliminated.
 Matrix6Xd of_faces(Matrix6Xd yielding, int spheres);
 
 }  // namespace pfv

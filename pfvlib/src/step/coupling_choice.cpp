@@ -14,11 +14,11 @@ namespace {
 /// The cheaper of the two couplings that go beyond the limit, by what a step costs in solves of the
 /// explicit coupling (doc/stability.md, costs): a stage is a solve and a product with S and S^T, about
 /// 1.6 sqrt(R) of them a step; an implicit step is one solve with a denser factor, made anew `steps`
-/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB: with shear forces the spins
-/// that torques bring are unknowns, too.
+/// steps later. Beyond `largest` grains that factor takes more than about 1.5 GB: the spins that torques bring are
+/// unknowns, too.
 Coupling cheaper(double ratio, double steps, Eigen::Index grains, const Options& options) {
-  constexpr double of_a_stage = 1.15, of_an_implicit_step = 8.0, of_its_factor = 800.0;
-  const Eigen::Index largest = options.shear_viscous && options.torques ? 12000 : 20000;
+  constexpr double of_a_stage = 1.15, of_an_implicit_step = 6.0, of_its_factor = 500.0;
+  const Eigen::Index largest = options.torques ? 12000 : 25000;
   const double staged = of_a_stage * 1.6 * std::sqrt(ratio);
   const double implicit = of_an_implicit_step + of_its_factor / steps;
   return grains <= largest && implicit < staged ? Coupling::implicit : Coupling::staged;
@@ -41,7 +41,7 @@ void CouplingChoice::choose(double limit, double dt, const Step& step, const Opt
                                                : unknown;
   if (!(ratio > 1.0))
     chosen_ = Coupling::explicit_step;
-  else if (options.shear_viscous && !abilities_of(options.solver).quasi_definite)
+  else if (!abilities_of(options.solver).implicit_steps)
     chosen_ = Coupling::staged;
   else
     chosen_ = cheaper(ratio, steps, grains, options);

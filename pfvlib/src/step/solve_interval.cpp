@@ -11,6 +11,7 @@ namespace {
 constexpr int longest = 1000;  // steps: something may begin to move meanwhile
 constexpr double aim = 0.7;    // of the tolerance
 constexpr double fastest_growth = 1.5, fastest_fall = 0.25;  // of the interval, at a solve
+constexpr double at_once = 0.1;  // of the tolerance: what an error may be that does not last
 constexpr double fading = 0.9;  // of what errors were, at a solve: they pass through zero where trends turn
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> loads_of(const Forces& forces) {
@@ -52,24 +53,36 @@ void SolveInterval::restart() {
   error_ = change_ = 0.0;
   memory_ = {0.0, 0.0};
   held_ = {};
+  missed_held_ = missed_continued_ = {};
+}
+
+double SolveInterval::size_of(const Difference& difference, const Scales& scales) {
+  return std::max(ratio(largest_norm(difference.faces), scales.face),
+                  ratio(root_mean_square(difference.grains), scales.grain));
+}
+
+/// Takes what a solve has missed into the mean with this weight.
+double SolveInterval::error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales) {
+  if (mean.grains.cols() != missed.grains.cols()) {
+    mean = missed;
+  } else {
+    mean.grains += weight * (missed.grains - mean.grains);
+    for (std::size_t f = 0; f < mean.faces.size(); ++f) mean.faces[f] += weight * (missed.faces[f] - mean.faces[f]);
+  }
+  return std::max(size_of(mean, scales), at_once * size_of(missed, scales));
 }
 
 SolveInterval::Errors SolveInterval::errors_of(const Forces& forces,
                                                const std::vector<Eigen::Vector3d>& faces,
-                                               double face_scale, double grain_scale,
-                                               double apart) const {
-  Eigen::Matrix3Xd change = forces.total - last_.topRows<3>();
-  std::vector<Eigen::Vector3d> face_change = minus(faces, 1.0, last_faces_);
-  const auto error = [&] {
-    return std::max(ratio(largest_norm(face_change), face_scale),
-                    ratio(root_mean_square(change), grain_scale));
-  };
-  Errors errors{error(), 0.0};
+                                               const Scales& scales, double apart, double weight) {
+  Difference missed{forces.total - last_.topRows<3>(), minus(faces, 1.0, last_faces_)};
+  change_ = size_of(missed, scales);
+  Errors errors{error_of(missed, missed_held_, weight, scales), 0.0};
   errors.continued = errors.held;
   if (!trend_known_) return errors;
-  change -= apart * trend_.topRows<3>();
-  face_change = minus(face_change, apart, face_trend_);
-  errors.continued = error();
+  missed.grains -= apart * trend_.topRows<3>();
+  missed.faces = minus(missed.faces, apart, face_trend_);
+  errors.continued = error_of(missed, missed_continued_, weight, scales);
   return errors;
 }
 
@@ -98,22 +111,22 @@ void SolveInterval::choose(Errors errors, int most) {
 void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
                          const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
                          double face_area, double section, int most,
-                         bool new_network) {
+                         bool new_network, double answer) {
   if (known_ && (ids.size() != ids_.size() || ids != ids_)) restart();
   Eigen::Matrix<double, 6, Eigen::Dynamic> loads = loads_of(forces);
   const double of_fluid = largest_norm(faces), of_grains = root_mean_square(forces.total);
   const double face_scale = std::max(face_load, of_fluid);
-  const double grain_scale = std::max(of_grains, face_scale / face_area * section);
-  share_ = std::max(ratio(of_fluid, face_scale), ratio(of_grains, grain_scale));
+  const Scales scales{face_scale, std::max(of_grains, face_scale / face_area * section)};
+  share_ = std::max(ratio(of_fluid, scales.face), ratio(of_grains, scales.grain));
   if (known_ && new_network) {
     trend_known_ = continues_ = false;
     last_steps_ = steps;
     steps_ = std::min(steps_, std::max(most, 1));
   } else if (known_) {
     const double apart = 0.5 * (steps + last_steps_);  // of the middles of this interval and the last
-    const Errors errors = errors_of(forces, faces, face_scale, grain_scale, apart);
+    const double weight = answer > 0.0 ? -std::expm1(-steps / answer) : 1.0;
+    const Errors errors = errors_of(forces, faces, scales, apart, weight);
     error_ = continues_ ? errors.continued : errors.held;
-    change_ = errors.held;
     largest_error_ = std::max(largest_error_, error_);
     trend_ = (loads - last_) / apart;
     face_trend_ = minus(faces, 1.0, last_faces_);

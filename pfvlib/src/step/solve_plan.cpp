@@ -86,8 +86,10 @@ void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
   const bool new_network = flow.retriangulations() != last_network_;
   last_network_ = flow.retriangulations();
   const double load = std::max(now.load_on_faces, weight_of(now, flow.fluid()));
-  interval_.take(now.packing.ids, flow.forces(), flow.face_forces(), now.steps, load, area, section,
-                 most_steps(flow, now), new_network);
+  const int most = most_steps(flow, now);
+  const double answer = 0.5 * limit_ / now.step;  // the fastest motion fades by 2 / limit; not known: below 0
+  interval_.take(now.packing.ids, flow.forces(), flow.face_forces(), now.steps, load, area, section, most,
+                 new_network, answer);
   if (take_up_network(flow, now)) {
     last_network_ = flow.retriangulations();
     interval_.put_on_network(flow.forces(), flow.face_forces());

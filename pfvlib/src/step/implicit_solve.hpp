@@ -10,13 +10,12 @@
 
 namespace pfv {
 
-/// The implicit step with shear forces -R v. They join the velocities of neighbours, so that pressures and
-/// velocities are found together, by one solve:
+/// Pressures and velocities of an implicit step, found together by one solve; -R u: shear forces, where there are any:
 ///
 ///     (M/(theta dt)) (u - w) = held + S p - R u,      G p = Q - S^T u
 ///
 /// Keeps the factor until the network, a mass or theta dt changes.
-class ShearedImplicit {
+class ImplicitSolve {
  public:
   void forget_network() { factor_.reset(); }
   void forget_factor();
@@ -33,7 +32,7 @@ class ShearedImplicit {
 
  private:
   struct Factor {
-    ShearedSystem system;
+    ImplicitSystem system;
     std::unique_ptr<QuasiDefiniteSolver> solver;
     std::optional<bool> loses_digits;  ///< as of KeptSystem
     Matrix6Xd yielding;                ///< that is in the factor; no columns: none is

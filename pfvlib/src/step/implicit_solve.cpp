@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "step/sheared_implicit.hpp"
+#include "step/implicit_solve.hpp"
 
 #include "pfv/error.hpp"
 #include "solve/linear_solver.hpp"
@@ -14,18 +14,18 @@
 
 namespace pfv {
 
-void ShearedImplicit::forget_factor() {
+void ImplicitSolve::forget_factor() {
   if (factor_) factor_->yielding.resize(6, 0);
 }
 
-double ShearedImplicit::residual() const {
+double ImplicitSolve::residual() const {
   return relative_residual(factor_->system.matrix, factor_->unknowns, factor_->right_side);
 }
 
 namespace {
 
 /// Of the unknown pressures, then of the grains whose velocities are unknown.
-Eigen::Matrix3Xd places_of(const BuiltNetwork& built, const ShearedSystem& system) {
+Eigen::Matrix3Xd places_of(const BuiltNetwork& built, const ImplicitSystem& system) {
   Eigen::Matrix3Xd places(3, system.matrix.size());
   places.leftCols(system.pressures) = unknown_places(built);
   Eigen::Index place = system.pressures;
@@ -35,7 +35,7 @@ Eigen::Matrix3Xd places_of(const BuiltNetwork& built, const ShearedSystem& syste
 }
 
 /// One entry for each velocity among the unknowns.
-Eigen::VectorXd velocities_in(const ShearedSystem& system, const Matrix6Xd& all) {
+Eigen::VectorXd velocities_in(const ImplicitSystem& system, const Matrix6Xd& all) {
   Eigen::VectorXd own(static_cast<Eigen::Index>(system.velocities.size()));
   Eigen::Index row = 0;
   for (const auto& [grain, component] : system.velocities) own[row++] = all(component, grain);
@@ -44,7 +44,7 @@ Eigen::VectorXd velocities_in(const ShearedSystem& system, const Matrix6Xd& all)
 
 }  // namespace
 
-void ShearedImplicit::order(const StepTask& task) {
+void ImplicitSolve::order(const StepTask& task) {
   const auto& [built, problem, packing, dynamics, work] = task;
   const PhaseClock clock(work.seconds.order);
   if (!factor_->solver)
@@ -54,7 +54,7 @@ void ShearedImplicit::order(const StepTask& task) {
   ++work.counts.order;
 }
 
-void ShearedImplicit::factor(const StepTask& task, Matrix6Xd yielding) {
+void ImplicitSolve::factor(const StepTask& task, Matrix6Xd yielding) {
   const auto& [built, problem, packing, dynamics, work] = task;
   const int spheres = built.grains.spheres.size();
   if (!problem.options.torques) yielding.bottomLeftCorner(3, spheres).setZero();
@@ -66,10 +66,10 @@ void ShearedImplicit::factor(const StepTask& task, Matrix6Xd yielding) {
   const std::vector<int> old_last = std::move(factor_->system.last);
   {
     const PhaseClock clock(work.seconds.assemble);
-    factor_->system = assemble_sheared(built.kept.system, built.unknowns, *built.operators.force_matrix, built.bases,
+    factor_->system = assemble_implicit(built.kept.system, built.unknowns, *built.operators.force_matrix, built.bases,
                                        yielding, resistance_blocks(built, problem.fluid.viscosity));
   }
-  const ShearedSystem& system = factor_->system;
+  const ImplicitSystem& system = factor_->system;
   if (!factor_->solver || system.matrix.row_begin != old.row_begin || system.matrix.column != old.column ||
       system.last != old_last)
     order(task);
@@ -87,10 +87,10 @@ void ShearedImplicit::factor(const StepTask& task, Matrix6Xd yielding) {
 
 /// Motion and rates of the unknowns as they are, and the loads that the motion has to answer, those of shear among
 /// them.
-Loads ShearedImplicit::follow(const StepTask& task, const ForcedMotion& forced, double growth,
+Loads ImplicitSolve::follow(const StepTask& task, const ForcedMotion& forced, double growth,
                               Solution& solution) const {
   const auto& [built, problem, packing, dynamics, work] = task;
-  const ShearedSystem& system = factor_->system;
+  const ImplicitSystem& system = factor_->system;
   const int spheres = built.grains.spheres.size();
   const Loads pressures = pressure_loads(built, solution);
   const ForcedMotion faces{forced.start, forced.held, of_faces(factor_->yielding, spheres)};
@@ -104,12 +104,12 @@ Loads ShearedImplicit::follow(const StepTask& task, const ForcedMotion& forced, 
 }
 
 /// As refine_pressures: the defects of continuity and of the balance of forces drive a correction of both.
-void ShearedImplicit::refine(const StepTask& task, const ForcedMotion& forced, double growth, Loads loads,
+void ImplicitSolve::refine(const StepTask& task, const ForcedMotion& forced, double growth, Loads loads,
                              Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
   constexpr double lost = 1e-9, exact = 1e-10, hopeless = 1e-6;
   constexpr int sweeps = 4;
-  const ShearedSystem& system = factor_->system;
+  const ImplicitSystem& system = factor_->system;
   if (system.matrix.size() == 0 || !factor_->loses_digits.value_or(true)) return;
   const Eigen::VectorXd inverse = velocities_in(system, factor_->yielding).cwiseInverse();
   double last = 0.0;
@@ -143,9 +143,9 @@ void ShearedImplicit::refine(const StepTask& task, const ForcedMotion& forced, d
 }
 
 /// What the box has grown by is taken with the velocities that faces have by the other forces, as in ImplicitStep.
-void ShearedImplicit::solve(const StepTask& task, const ForcedMotion& forced, Solution& solution) {
+void ImplicitSolve::solve(const StepTask& task, const ForcedMotion& forced, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
-  const ShearedSystem& system = factor_->system;
+  const ImplicitSystem& system = factor_->system;
   const Eigen::Index pressures = system.pressures, size = system.matrix.size();
   const Loads imposed = pressure_loads(built, solution);
   const Motion faces = forced.moved_by(imposed);
