@@ -36,6 +36,9 @@ struct Counts {
   /// Of the present network: throats whose law needed the rule for phi <= 0, gamma <= 0 or A_f <= 0;
   /// tetrahedra that were merged into another pore; pores at rest without any way to a pressure.
   std::int64_t degenerate_throats = 0, merged_pores = 0, pinned_pores = 0;
+  /// Pores within one rigid body, which are no fluid; pores at bodies that overlaps have closed, which share the
+  /// pressure of a neighbour.
+  std::int64_t enclosed_pores = 0, joined_pores = 0;
 };
 
 /// CPU seconds of the process, all threads, summed over the life of the Flow.
@@ -101,6 +104,8 @@ void for_each_entry(const Counts& counts, const See& see) {
   see("degenerate_throats", counts.degenerate_throats);
   see("merged_pores", counts.merged_pores);
   see("pinned_pores", counts.pinned_pores);
+  see("enclosed_pores", counts.enclosed_pores);
+  see("joined_pores", counts.joined_pores);
 }
 template <class See>
 void for_each_entry(const Seconds& seconds, const See& see) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "physics/force_matrix.hpp"
+#include "physics/rigid_bodies.hpp"
 #include "physics/shear_forces.hpp"
 #include "physics/volume_rates.hpp"
 #include "solve/linear_solver.hpp"
@@ -23,7 +24,8 @@ struct ImplicitSystem {
 };
 
 /// `system`: G with storage. `forces`: S, to which the pressures on the faces come. `yielding`: the diagonal of
-/// B, dt over mass (s/kg) or inertia (s/(kg m²)) for each row of S, 0 for what no force moves.
+/// B, dt over mass (s/kg) or inertia (s/(kg m²)) for each row of S, 0 for what no force moves. With rigid bodies
+/// `forces` is that on them (physics/rigid_bodies.hpp).
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns,
                                  const ForceMatrix& forces, const Bases& bases,
                                  const Matrix6Xd& yielding);
@@ -37,7 +39,7 @@ ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& u
 /// S_f, B_f: of the faces. Quasi-definite: L D L^T exists in any order.
 struct ShearedSystem {
   struct Velocity {
-    int grain, component;  ///< column and row of a Motion: 0-2 velocity, 3-5 spin
+    int mover, component;  ///< column and row of a (wide) motion: 0-2 velocity, 3-5 spin; no face
   };
   SymmetricMatrix matrix;
   std::vector<double> signs;  ///< of the pivots: -1 of the pressures, which come first, 1 of the velocities
@@ -48,12 +50,12 @@ struct ShearedSystem {
   std::vector<int> last;
 };
 
-/// `pairs` and `viscosity`: R.
+/// `pairs` and `viscosity`: R. `bodies`: those that `forces` acts on, or null.
 ShearedSystem assemble_sheared(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
                                const Bases& bases, const Matrix6Xd& yielding,
-                               const std::vector<ShearPair>& pairs, double viscosity);
+                               const std::vector<ShearPair>& pairs, double viscosity, const RigidBodies* bodies);
 
-/// Of the faces alone: what is eliminated from a sheared system.
-Matrix6Xd of_faces(Matrix6Xd yielding, int spheres);
+/// Of the faces alone, which stand between the spheres and so many bodies: what is eliminated from a sheared system.
+Matrix6Xd of_faces(Matrix6Xd yielding, int spheres, int bodies);
 
 }  // namespace pfv

@@ -5,10 +5,12 @@
 #include "network/pore_boundaries.hpp"
 #include "physics/conductances.hpp"
 #include "physics/force_matrix.hpp"
+#include "physics/rigid_bodies.hpp"
 #include "physics/shear_forces.hpp"
 #include "physics/solid_union.hpp"
 #include "physics/throats.hpp"
 #include "physics/volume_rates.hpp"
+#include "solve/closed_pores.hpp"
 #include "solve/linear_solver.hpp"
 #include "problem/container_geometry.hpp"
 #include "solve/pressure_system.hpp"
@@ -48,6 +50,7 @@ struct KeptOperators {
   std::optional<std::pair<Eigen::Vector3d, Loads>> gradient_loads;  ///< for that macroscopic gradient
   std::optional<SurfacePressure> surface_pressure;
   std::optional<std::vector<ShearPair>> shear_pairs;
+  std::optional<RigidBodies> bodies;                ///< as they stood when they were first asked for
   std::optional<SolidUnion> solid;
   std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis
 };
@@ -64,6 +67,7 @@ struct BuiltNetwork {
   Conductances conductances;
   Bases bases;  ///< one entry a boundary contact
   Unknowns unknowns;
+  ClosedPores closed;
   std::vector<double> strain_volume;  ///< volume that a pore's strain refers to, bounded below
   KeptSystem kept;
   KeptOperators operators;

@@ -50,8 +50,10 @@ void ImplicitStep::factor(const StepTask& task, const Matrix6Xd& yielding) {
   const std::vector<int> old_pattern = factor_->system.matrix.column;
   {
     const PhaseClock clock(work.seconds.assemble);
+    const ForceMatrix& forces = *built.operators.force_matrix;
+    const RigidBodies* const bodies = bodies_of(built);
     factor_->system = assemble_implicit(built.kept.system, built.unknowns,
-                                        *built.operators.force_matrix, built.bases, yielding);
+                                        bodies ? forces_on_bodies(forces, *bodies) : forces, built.bases, yielding);
   }
   const bool new_pattern = !factor_->solver || factor_->system.matrix.column != old_pattern;
   if (!factor_->solver) factor_->solver = make_solver(problem.options, problem.team);
@@ -105,8 +107,10 @@ void ImplicitStep::find(const StepTask& task, Solution& solution) {
   check_dynamics(*dynamics, packing, problem.container);
   solution.implicit = true;
   set_motion(built, problem, packing, solution.motion);
-  ForcedMotion forced{solution.motion, {}, yielding_of(built, problem, *dynamics, theta * solution.dt)};
-  solution.moving = !at_rest(packing, problem.container, problem.options.torques) ||
+  check_bodies(dynamics->bodies, built.grains.held);
+  take_bodies(built, problem, dynamics->bodies);
+  ForcedMotion forced{solution.motion, {}, yielding_of(built, problem, *dynamics, theta * solution.dt), bodies_of(built)};
+  solution.moving = !at_rest(packing, problem.container, has_moments(built, problem)) ||
                     (forced.yielding.array() > 0.0).any();
   refuse_undetermined(problem, solution.moving);
   make_force_matrices(built, problem, work.counts);

@@ -7,6 +7,13 @@
 
 namespace pfv {
 
+bool has_moments(const BuiltNetwork& built, const Problem& problem) {
+  if (problem.options.torques) return true;
+  const auto& walls = built.vertices.walls;
+  return !built.grains.body.empty() && problem.options.volume_rates == VolumeRates::reciprocal &&
+         std::all_of(walls.begin(), walls.end(), [](const WallSurface& wall) { return wall.is_plane(); });
+}
+
 void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& counts) {
   const std::vector<ContainerFace>& faces = problem.container.faces;
   const bool turning = std::any_of(faces.begin(), faces.end(), [](const ContainerFace& face) {
@@ -19,8 +26,9 @@ void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& coun
       viscous_shares(problem.options.conductance, built.network, built.throats, built.vertices);
   built.operators.force_matrix =
       force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
-                   built.grains.spheres.size(), {true, true, problem.options.torques, turning},
+                   built.grains.spheres.size(), {true, true, has_moments(built, problem), turning},
                    *problem.team);
+  if (!problem.options.torques) drop_moments_of_single(*built.operators.force_matrix, built.grains.body);
   if (stretching) {
     add_stretching(*built.operators.force_matrix, built.network, built.grains.spheres, built.vertices,
                    built.throats, built.operators.viscous_shares);
@@ -49,8 +57,10 @@ void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& co
     built.operators.pressure_force_matrix =
         force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
                      built.grains.spheres.size(), {true, false, false}, *problem.team);
-  if (problem.options.shear_viscous && !built.operators.shear_pairs)
+  if (problem.options.shear_viscous && !built.operators.shear_pairs) {
     built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.grains.spheres, built.vertices);
+    if (!built.grains.body.empty()) drop_pairs_within(*built.operators.shear_pairs, built.grains.body);
+  }
   if (problem.options.sphere_pressure && !built.operators.surface_pressure)
     built.operators.surface_pressure =
         surface_pressure(built.network, built.vertices, built.grains.spheres);
@@ -68,10 +78,12 @@ Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
 const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
   auto& kept = built.operators.gradient_loads;
   const Eigen::Vector3d& gradient = problem.container.pressure_gradient;
-  if (!kept || kept->first != gradient)
+  if (!kept || kept->first != gradient) {
     kept = {gradient, gradient_forces(built.network, built.vertices, built.throats,
                                       built.operators.viscous_shares, built.grains.spheres.size(),
-                                      {true, true, problem.options.torques}, gradient)};
+                                      {true, true, has_moments(built, problem)}, gradient)};
+    if (!problem.options.torques) drop_moments_of_single(kept->second, built.grains.body);
+  }
   return kept->second;
 }
 
@@ -95,6 +107,7 @@ void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen
     volume_rates(*built.operators.geometric_rates, motion, team, rates);
   else
     reciprocal_rates(*built.operators.force_matrix, *built.operators.sum_order, built.bases, motion, team, rates);
+  for (const int pore : built.unknowns.enclosed_pores) rates[pore] = 0.0;
 }
 
 Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion) {

@@ -38,11 +38,12 @@ void move_with_images(const BuiltNetwork& built, const Problem& problem, const P
 void set_motion(const BuiltNetwork& built, const Problem& problem, const Packing& packing,
                 Motion& motion) {
   const std::vector<int>& columns = built.grains.columns;
+  const bool spins = has_moments(built, problem);
   motion = no_motion(static_cast<Eigen::Index>(columns.size()), problem.container.face_count());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     auto own = motion.col(static_cast<Eigen::Index>(i));
     if (packing.velocities.cols() > 0) own.head<3>() = packing.velocities.col(columns[i]);
-    if (problem.options.torques && packing.angular_velocities.cols() > 0)
+    if (spins && packing.angular_velocities.cols() > 0 && (problem.options.torques || built.grains.body[i] >= 0))
       own.tail<3>() = packing.angular_velocities.col(columns[i]);
   }
   if (stretches(problem.container)) move_with_images(built, problem, packing, motion);
@@ -68,6 +69,7 @@ void impose(const BuiltNetwork& built, Solution& solution) {
   for (const int pore : pores) sum += relative[pore] - first;
   solution.reference = pores.empty() ? 0.0 : first + sum / static_cast<double>(pores.size());
   for (const int pore : pores) relative[pore] -= solution.reference;
+  for (const int pore : built.unknowns.enclosed_pores) relative[pore] = 0.0;
 }
 
 namespace {
