@@ -288,6 +288,22 @@ TEST(RigidBodies, SpheresLeftOutPassTheirForcesOn) {
   EXPECT_LT((on_sphere - on_body).norm(), 1e-12 * on_body.norm());
 }
 
+// volumes
+
+TEST(RigidBodies, TheFluidHasWhatTheirUnionLeaves) {
+  Clumps grains = dumbbells(0);
+  pfv::Flow whole(drained(), viscosity_one()), flow(drained(), viscosity_one());
+  whole.evaluate(grains.packing.view());
+  grains.packing.displaced_volumes.resize(grains.masses.size());
+  for (const auto& own : grains.members)
+    grains.packing.displaced_volumes(own) =
+        pfv::union_parts(grains.packing.positions(Eigen::all, own), grains.packing.radii(own));
+  flow.evaluate(grains.packing.view());
+  const double cap = pi * 0.045 * 0.045 * (3.0 * 0.09 - 0.045) / 3.0;
+  EXPECT_NEAR(*flow.report().fluid_volume - *whole.report().fluid_volume, 27 * 2 * cap, 1e-12);
+  EXPECT_NEAR(*flow.report().fluid_volume, flow.report().pore_volume, 1e-12);
+}
+
 // what lies within
 
 /// Four spheres that close a void between them: the circle through three centres has the radius 1.72 r / sqrt(3) < r, the

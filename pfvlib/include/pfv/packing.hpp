@@ -19,9 +19,10 @@ namespace pfv {
 /// | velocities | 3 x N | m/s  | empty (3 x 0): the grains are at rest and no volume  |
 /// |            |       |      | rate is computed                                     |
 /// | angular_velocities | 3 x N | rad/s | about the centres; empty (3 x 0): nothing spins |
-/// | displaced_ | N     | m³   | what each sphere's lift counts: of spheres that       |
-/// | volumes    |       |      | overlap in one rigid body its share of their union    |
-/// |            |       |      | (pfv/union_parts.hpp); empty: whole spheres           |
+/// | displaced_ | N     | m³   | what each sphere's lift and the fluid's volume count: |
+/// | volumes    |       |      | of spheres that overlap in one rigid body its share   |
+/// |            |       |      | of their union (pfv/union_parts.hpp); empty: whole    |
+/// |            |       |      | spheres                                               |
 /// | bodies     | N     | -    | number of the rigid body that holds the sphere, from  |
 /// |            |       |      | 0 on, -1 for none; empty: there are no bodies. What   |
 /// |            |       |      | lies within one body is no fluid                      |

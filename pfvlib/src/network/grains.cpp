@@ -187,6 +187,7 @@ ActiveGrains select_grains(const Packing& packing, const Container& container, O
             spheres.edges[axis] * std::floor(spheres.centres(axis, i) / spheres.edges[axis]);
     spheres.radii[i] = packing.radii[k];
   }
+  if (packing.displaced_volumes.size() > 0) spheres.displaced = packing.displaced_volumes(grains.columns);
   if (has_bodies(packing)) {
     grains.held = packing.bodies;
     for (const int k : grains.columns) grains.body.push_back(packing.bodies[k]);
