@@ -107,9 +107,16 @@ class Bodies(CoupledTest):
         """Motion of the body against what the fix shows of force, torque and the spheres' own torques."""
         step = 1e-5
         self.make(speed=1e-3)
-        self.liggghts(self.go_on(f"fix flow all pfv viscosity 200 {CLOSE}\n", step) + "run 40\n")
-        frames = self.pairs()
-        self.assertGreater(max(map(abs, frames[20].own_moments)), 1e-3 * max(map(abs, frames[20].moment)))
+        for torques in ("no", "yes"):
+            flow = f"fix flow all pfv viscosity 100 {CLOSE} torques {torques}\n"
+            self.liggghts(self.go_on(flow, step) + "run 40\n")
+            frames = self.pairs()
+            own = max(map(abs, frames[20].own_moments)) / max(map(abs, frames[20].moment))
+            self.assertEqual(own > 1e-3, torques == "yes")
+            with self.subTest(torques=torques):
+                self.check_motion(frames, step)
+
+    def check_motion(self, frames, step):
         for n in range(10, 30):
             now, then = frames[n], frames[n + 1]
             mean = [(a + b) / 2 for a, b in zip(now.force, then.force)]

@@ -21,8 +21,7 @@ struct Forces {
   Eigen::Matrix3Xd total;     ///< pressure + viscous + buoyancy
   Eigen::Matrix3Xd pressure;  ///< with buoyancy; empty unless Options::split_forces
   Eigen::Matrix3Xd viscous;   ///< empty unless Options::split_forces
-  Eigen::Matrix3Xd torque;    ///< N m about the centres; empty where all forces act at the centres. On the spheres
-                              ///< of rigid bodies forces act where they lie, with or without Options::torques
+  Eigen::Matrix3Xd torque;    ///< N m about the centres; empty where forces act at the centres
   Eigen::VectorXd sphere_pressure;  ///< Pa, mean over the sphere's surface; empty unless
                                     ///< Options::sphere_pressure; 0 for hidden and left-out spheres
 };

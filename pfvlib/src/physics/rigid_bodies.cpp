@@ -97,17 +97,6 @@ ForceMatrix forces_on_bodies(const ForceMatrix& forces, const RigidBodies& bodie
   return result;
 }
 
-void drop_moments_of_single(Loads& loads, const std::vector<int>& body) {
-  for (std::size_t i = 0; i < body.size(); ++i)
-    if (body[i] < 0) loads.col(static_cast<Eigen::Index>(i)).tail<3>().setZero();
-}
-
-void drop_moments_of_single(ForceMatrix& forces, const std::vector<int>& body) {
-  for (std::size_t i = 0; i < body.size(); ++i)
-    for (int e = forces.row_begin[i]; body[i] < 0 && e < forces.row_begin[i + 1]; ++e)
-      forces.value.col(e).tail<3>().setZero();
-}
-
 void drop_pairs_within(std::vector<ShearPair>& pairs, const std::vector<int>& body) {
   const auto within = [&](const ShearPair& pair) {
     return body[pair.first] >= 0 && body[pair.first] == body[pair.second];

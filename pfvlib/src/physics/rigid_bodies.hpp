@@ -43,12 +43,7 @@ RigidBodies rigid_bodies(const Eigen::VectorXi& held, const std::vector<int>& co
 /// B^T S: a row for each body behind the others, and none of the spheres that they hold.
 ForceMatrix forces_on_bodies(const ForceMatrix& forces, const RigidBodies& bodies);
 
-// `body`: of each sphere, -1 for none.
-
-/// Without moments but on the spheres of bodies.
-void drop_moments_of_single(Loads& loads, const std::vector<int>& body);
-void drop_moments_of_single(ForceMatrix& forces, const std::vector<int>& body);
-/// Within one body nothing slides.
+/// Within one body nothing slides. `body`: of each sphere, -1 for none.
 void drop_pairs_within(std::vector<ShearPair>& pairs, const std::vector<int>& body);
 
 }  // namespace pfv

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "step/operators.hpp"
 #include "step/pressure_solve.hpp"
 #include "step/solvability.hpp"
 #include "step/step_scheme.hpp"
@@ -8,7 +7,7 @@ namespace pfv {
 
 void find_rates_of_packing(const StepTask& task, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
-  solution.moving = !at_rest(packing, problem.container, has_moments(built, problem));
+  solution.moving = !at_rest(packing, problem.container, problem.options.torques);
   refuse_undetermined(problem, solution.moving);
   set_motion(built, problem, packing, solution.motion);
   if (solution.moving)

@@ -84,7 +84,7 @@ void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& pac
   multiply(*built.operators.force_matrix, solution.relative_pressures, *problem.team, loads);
   if (!problem.container.pressure_gradient.isZero(0.0)) loads += gradient_loads(built, problem);
   spread(loads.topRows<3>(), columns, packing.size(), forces.total);
-  if (has_moments(built, problem)) spread(loads.bottomRows<3>(), columns, packing.size(), forces.torque);
+  if (options.torques) spread(loads.bottomRows<3>(), columns, packing.size(), forces.torque);
   if (options.split_forces) split(built, problem, solution, forces);
   if (options.shear_viscous) add_shear_forces(built, problem, solution, forces);
   if (problem.lifts()) add_lift(built, problem, packing, forces);

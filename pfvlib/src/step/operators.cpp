@@ -7,13 +7,6 @@
 
 namespace pfv {
 
-bool has_moments(const BuiltNetwork& built, const Problem& problem) {
-  if (problem.options.torques) return true;
-  const auto& walls = built.vertices.walls;
-  return !built.grains.body.empty() && problem.options.volume_rates == VolumeRates::reciprocal &&
-         std::all_of(walls.begin(), walls.end(), [](const WallSurface& wall) { return wall.is_plane(); });
-}
-
 void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& counts) {
   const std::vector<ContainerFace>& faces = problem.container.faces;
   const bool turning = std::any_of(faces.begin(), faces.end(), [](const ContainerFace& face) {
@@ -26,9 +19,8 @@ void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& coun
       viscous_shares(problem.options.conductance, built.network, built.throats, built.vertices);
   built.operators.force_matrix =
       force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
-                   built.grains.spheres.size(), {true, true, has_moments(built, problem), turning},
+                   built.grains.spheres.size(), {true, true, problem.options.torques, turning},
                    *problem.team);
-  if (!problem.options.torques) drop_moments_of_single(*built.operators.force_matrix, built.grains.body);
   if (stretching) {
     add_stretching(*built.operators.force_matrix, built.network, built.grains.spheres, built.vertices,
                    built.throats, built.operators.viscous_shares);
@@ -78,12 +70,10 @@ Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
 const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
   auto& kept = built.operators.gradient_loads;
   const Eigen::Vector3d& gradient = problem.container.pressure_gradient;
-  if (!kept || kept->first != gradient) {
+  if (!kept || kept->first != gradient)
     kept = {gradient, gradient_forces(built.network, built.vertices, built.throats,
                                       built.operators.viscous_shares, built.grains.spheres.size(),
-                                      {true, true, has_moments(built, problem)}, gradient)};
-    if (!problem.options.torques) drop_moments_of_single(kept->second, built.grains.body);
-  }
+                                      {true, true, problem.options.torques}, gradient)};
   return kept->second;
 }
 

@@ -11,8 +11,6 @@ namespace pfv {
 
 // The operators of a network, made when they are first needed, and what they give.
 
-/// Whether forces act where they lie: on all spheres, or on those of rigid bodies alone, where the model has moments.
-bool has_moments(const BuiltNetwork& built, const Problem& problem);
 /// S, where it is not there yet.
 void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& counts);
 /// What volume rates need, likewise: S, or E where the options want that.

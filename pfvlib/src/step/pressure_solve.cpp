@@ -38,12 +38,11 @@ void move_with_images(const BuiltNetwork& built, const Problem& problem, const P
 void set_motion(const BuiltNetwork& built, const Problem& problem, const Packing& packing,
                 Motion& motion) {
   const std::vector<int>& columns = built.grains.columns;
-  const bool spins = has_moments(built, problem);
   motion = no_motion(static_cast<Eigen::Index>(columns.size()), problem.container.face_count());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     auto own = motion.col(static_cast<Eigen::Index>(i));
     if (packing.velocities.cols() > 0) own.head<3>() = packing.velocities.col(columns[i]);
-    if (spins && packing.angular_velocities.cols() > 0 && (problem.options.torques || built.grains.body[i] >= 0))
+    if (problem.options.torques && packing.angular_velocities.cols() > 0)
       own.tail<3>() = packing.angular_velocities.col(columns[i]);
   }
   if (stretches(problem.container)) move_with_images(built, problem, packing, motion);
