@@ -130,24 +130,29 @@ class Bodies(CoupledTest):
 
     # long steps
 
-    def slowed(self, coupling, step, shear="no", ranks=1, viscosity=500, pieces=1):
-        """The pair 2e-4 s after it had 1 mm/s, and the limit that was printed: the fluid brakes it under its weight."""
-        steps = round(2e-4 / step)
+    def slowed(self, coupling, step, shear="no", ranks=1, viscosity=500, time=2e-4):
+        """The pair some time after it had 1 mm/s, and the limit that was printed: the fluid brakes it under its weight."""
+        steps = round(time / step)
         flow = GRAVITY.replace("10.0", "0.5") + (
             f"fix flow all pfv viscosity {viscosity} density 100 {CLOSE} coupling {coupling} shear_viscous {shear}\n")
-        screen = self.liggghts(self.go_on(flow, step) + pieces * f"run {steps // pieces}\n", ranks=ranks)
+        screen = self.liggghts(self.go_on(flow, step) + f"run {steps}\n", ranks=ranks)
         return self.pairs()[steps], float(screen.split("limit of the explicit coupling")[1].split()[0])
 
     def test_long_steps_follow_short_ones(self):
+        """At ten limits of the explicit coupling in a step it sinks as at a fifth of one; below, its speed falls alike."""
         self.make(speed=1e-3)
         for shear in ("no", "yes"):
-            exact = self.slowed("explicit", 1e-6, shear)[0]
-            speed = math.hypot(*exact.velocity)
+            exact = self.slowed("explicit", 1e-6, shear, viscosity=12500, time=3e-3)[0]
+            falling = self.slowed("explicit", 1e-6, shear)[0]
             for coupling in ("staged", "implicit", "auto"):
                 with self.subTest(coupling=coupling, shear=shear):
-                    far, near = (self.slowed(coupling, step, shear)[0] for step in (5e-5, 1e-5))
-                    self.assertLess(math.dist(far.velocity, exact.velocity), 0.25 * speed)
-                    self.assertLess(math.dist(near.velocity, exact.velocity), 0.06 * speed)
+                    found, limit = self.slowed(coupling, 5e-5, shear, viscosity=12500, time=3e-3)
+                    self.assertGreater(5e-5 / limit, 9)
+                    # 0.6 %: it still gathers speed, and the methods are of first order
+                    self.assertLess(math.dist(found.velocity, exact.velocity), 0.01 * math.hypot(*exact.velocity))
+                    self.assertLess(math.dist(found.spin, exact.spin), 0.01 * math.hypot(*exact.spin))
+                    near = self.slowed(coupling, 1e-5, shear)[0]
+                    self.assertLess(math.dist(near.velocity, falling.velocity), 0.02 * 1e-3)
 
     def test_a_hundred_limits_in_a_step(self):
         """A fifth of a millisecond takes 99 % of the speed; the explicit coupling throws it out of the box."""
@@ -210,20 +215,20 @@ class Rigid(CoupledTest):
                 self.assertLess(R * max(map(abs, last.spin)), 1e-12 * 10.0 * 200e-5)
 
     def falling(self, coupling, step):
-        """Twice as dense, at some 60 limits of the explicit coupling in 5e-5 s."""
-        flow = GRAVITY + f"fix flow all pfv viscosity 500 density 500 {CLOSE} coupling {coupling}\n"
-        self.liggghts(self.script(flow, step) + f"run {round(2e-4 / step)}\n")
-        return self.pairs()[-1]
+        """Twice as dense, 1 ms after it was let go, and the limit."""
+        flow = GRAVITY + f"fix flow all pfv viscosity 12500 density 500 {CLOSE} coupling {coupling}\n"
+        screen = self.liggghts(self.script(flow, step) + f"run {round(1e-3 / step)}\n")
+        return self.pairs()[-1], float(screen.split("limit of the explicit coupling")[1].split()[0])
 
     def test_long_steps_follow_short_ones(self):
-        exact = self.falling("explicit", 1e-6)
-        self.assertLess(exact.velocity[2], -1e-6)
+        exact, limit = self.falling("explicit", 1e-6)
+        self.assertGreater(5e-5 / limit, 9)
+        self.assertLess(exact.velocity[2], 0.0)
         for coupling in ("staged", "implicit"):
             with self.subTest(coupling=coupling):
-                far, near = (self.falling(coupling, step) for step in (5e-5, 1e-5))
-                for found, part in ((far, 0.05), (near, 0.02)):
-                    self.assertLess(math.dist(found.velocity, exact.velocity), part * math.hypot(*exact.velocity))
-                    self.assertLess(math.dist(found.spin, exact.spin), part * math.hypot(*exact.spin))
+                found, _ = self.falling(coupling, 5e-5)
+                self.assertLess(math.dist(found.velocity, exact.velocity), 1e-3 * math.hypot(*exact.velocity))
+                self.assertLess(math.dist(found.spin, exact.spin), 1e-3 * math.hypot(*exact.spin))
 
     def test_one_that_is_held_along_an_axis(self):
         flow = GRAVITY + f"fix flow all pfv viscosity 500 density 500 {CLOSE} coupling implicit\n"
