@@ -16,12 +16,12 @@ import scene
 from plotting import plt, save_figure
 
 KEYS = {
-    "N": (int, 60, "grains of each kind"),
+    "N": (int, 40, "grains of each kind"),
     "SEED": scene.SEED,
     "MU": (float, 0.4, "friction between grains and with the walls"),
     "VISCOSITY": (float, 1.0, "Pa s"),
     "COUPLING": (str, "implicit", "explicit, staged, implicit or auto"),
-    "TIME": (float, 3.0, "s"),
+    "TIME": (float, 0.5, "s"),
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS, DENSITY = 1.5e-3, 20.0, 2500.0  # m, N/m, kg/m3
