@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rigid bodies of several spheres (fix multisphere): what of them counts for a grain of the flow.
+// Rigid bodies of several spheres (fix multisphere, fix rigid): what of them counts for the flow.
 #ifndef LMP_PFV_BODIES_H
 #define LMP_PFV_BODIES_H
 
+#include "body_sources.h"
 #include "grain_exchange.h"
+
+#include "pfv/flow_model.hpp"
 
 #include "pointers.h"
 
@@ -12,28 +15,26 @@
 
 namespace LAMMPS_NS {
 
-class FixMultisphere;
-
-/// The fix multisphere of the simulation, or null.
-FixMultisphere* find_multisphere(class Modify* modify);
-
 class PfvBodies : protected Pointers {
  public:
   explicit PfvBodies(class LAMMPS* lmp) : Pointers(lmp) {}
 
-  /// Gives the grains just gathered what they have of their bodies: a mass that stands for the body's in
-  /// the limit of the time step and, with `lift`, their share of the body's volume. Collective; without a
-  /// fix multisphere it costs nothing.
-  void apply(const PfvGroups& groups, bool lift, PfvGrainExchange& grains);
+  /// Finds the bodies of the grains just gathered, `gravity` (m/s²) acting on those that carry their own weight,
+  /// and gives these grains their share of the body's volume and a mass that stands for the body's where a model
+  /// knows no bodies. Collective; without a fix of bodies it costs nothing.
+  void apply(const PfvGroups& groups, const Eigen::Vector3d& gravity, PfvGrainExchange& grains);
 
+  /// In the order of Packing::bodies; rank 0.
+  const std::vector<pfv::RigidBody>& rigid() const { return rigid_; }
+  /// Why the flow cannot take long steps with these bodies, or nothing; rank 0.
+  const std::string& obstacle() const { return obstacle_; }
   /// Volumes are found anew from the places of the spheres, which round-off tells from those before.
   void forget() { known_.clear(); }
 
  private:
-  /// Of one body: its spheres, as columns of the packing, and its motion.
-  struct Body {
-    std::vector<double> numbers;  ///< as gather_bodies sends them
-    std::vector<int> columns;
+  /// The spheres of one body that are in the flow.
+  struct Held {
+    std::vector<int> columns;  ///< of the packing, ascending
     bool free = false;
   };
   struct Volumes {
@@ -41,13 +42,15 @@ class PfvBodies : protected Pointers {
     Eigen::VectorXd radii, volumes;
   };
 
-  std::vector<double> gather_members(const PfvGroups& groups, FixMultisphere& bodies) const;
-  std::vector<double> gather_bodies(FixMultisphere& bodies) const;
-  std::vector<double> on_root(const std::vector<double>& mine) const;
-  double mass_of(const Body& body, const pfv::Packing& packing) const;
-  Eigen::VectorXd volumes_of(int tag, const Body& body, const pfv::Packing& packing);
+  void add(const PfvBodyKey& key, const PfvBody& body, const Held& held, const Eigen::Vector3d& gravity,
+           const pfv::Packing& packing);
+  void add_loads_from_outside(const PfvBodyList& list, const std::map<PfvBodyKey, int>& numbers);
+  Eigen::VectorXd volumes_of(const PfvBodyKey& key, const PfvBody& body, const Held& held,
+                             const pfv::Packing& packing);
 
-  std::map<int, Volumes> known_;  // by the body's tag; rank 0
+  std::vector<pfv::RigidBody> rigid_;  // these, too, on rank 0
+  std::string obstacle_;
+  std::map<PfvBodyKey, Volumes> known_;
 };
 
 }  // namespace LAMMPS_NS

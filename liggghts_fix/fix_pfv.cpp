@@ -189,7 +189,7 @@ void FixPfv::check_other_fixes() {
 /// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
   grains_.gather(groups_, needs_forces(), cell_.streaming(since_.cell_rates));
-  bodies_.apply(groups_, settings_.options.buoyancy && !settings_.fluid.gravity.isZero(0.0), grains_);
+  bodies_.apply(groups_, settings_.fluid.gravity, grains_);
   everywhere([&] { faces_.read(); });
   pistons_ = faces_.pistons(needs_forces());
 }

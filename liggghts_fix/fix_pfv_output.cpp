@@ -29,7 +29,7 @@ double FixPfv::quantity(int n) {
     case 2: return report().mass_error;
     case 3: return report().force_balance_error;
     case 4: return static_cast<double>(flow_->retriangulations());
-    case 5: return flow_->time_step_limit(grains_.masses(), pistons_);
+    case 5: return flow_->time_step_limit(grains_.masses(), pistons_, bodies_.rigid());
     case 6: return flow_->mean_pressure();
     case 7: return static_cast<double>(flow_->hidden_or_outside());
     case 8: return static_cast<double>(flow_->stages());

@@ -40,7 +40,7 @@ void FixPfv::plan_next_solve(int steps) {
   const double motion = gross_motion();
   on_root([&] {
     plan_->take(*flow_, {grains_.packing(), grains_.masses(), pistons_, steps, update->dt, motion,
-                         on_meshes, settings_.options.retriangulation_strain});
+                         on_meshes, settings_.options.retriangulation_strain, &bodies_.rigid()});
     next_ = plan_->next();
   });
   double told[] = {static_cast<double>(next_.steps), next_.offset, next_.sensitivity, next_.motion};

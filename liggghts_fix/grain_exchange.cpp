@@ -96,6 +96,7 @@ void PfvGrainExchange::sort_by_tag() {
   grains_.angular_velocities.resize(3, count);
   masses_.resize(count);
   grains_.displaced_volumes.resize(0);
+  grains_.bodies.resize(0);
   forces_.resize(3, with_forces_ ? count : 0);
   torques_.resize(3, with_forces_ ? count : 0);
   inertias_.resize(with_forces_ ? count : 0);

@@ -42,19 +42,23 @@ class PfvGrainExchange : protected Pointers {
   const Eigen::Matrix3Xd& unwrapped() const { return unwrapped_.cols() > 0 ? unwrapped_ : grains_.positions; }
   /// kg, infinite for a grain that no force moves; rank 0.
   const Eigen::VectorXd& masses() const { return masses_; }
-  /// Masses and forces of the last gathering with forces, and these pistons; rank 0.
-  pfv::GrainDynamics dynamics(const std::vector<pfv::Piston>& pistons) const {
+  /// Masses and forces of the last gathering with forces, and these pistons and bodies; rank 0.
+  pfv::GrainDynamics dynamics(const std::vector<pfv::Piston>& pistons,
+                              const std::vector<pfv::RigidBody>& bodies) const {
     return {{masses_.data(), masses_.size()},
             {forces_.data(), 3, forces_.cols()},
             pistons,
             {torques_.data(), 3, torques_.cols()},
-            {inertias_.data(), inertias_.size()}};
+            {inertias_.data(), inertias_.size()},
+            bodies};
   }
-  /// What rigid bodies make of the gathered grains: masses (kg) and displaced volumes (m³; empty: whole
-  /// spheres); rank 0.
-  void stand_for_bodies(const Eigen::VectorXd& masses, const Eigen::VectorXd& displaced) {
+  /// What rigid bodies make of the gathered grains: masses (kg), displaced volumes (m³) and the number of the body of
+  /// each, -1 for none; rank 0.
+  void stand_for_bodies(const Eigen::VectorXd& masses, const Eigen::VectorXd& displaced,
+                        const Eigen::VectorXi& bodies) {
     masses_ = masses;
     grains_.displaced_volumes = displaced;
+    grains_.bodies = bodies;
   }
   PfvSnapshot snapshot() const;                              ///< rank 0
 

@@ -83,12 +83,8 @@ std::string PfvOtherFixes::obstacle_to_long_steps() const {
     const bool frozen_before = !later && style_of(other) == "freeze";
     const bool adds_later =
         later && acts && !overwrites_forces(other) && !leaves_forces_alone(other);
-    if (!moves_bodies_of_flow(other) && !frozen_before && !adds_later) continue;
+    if (!frozen_before && !adds_later) continue;
     if (!share_grains_with(other)) continue;
-    if (moves_bodies_of_flow(other))
-      return name_of(other) + " moves grains as rigid bodies, which only the "
-                              "explicit coupling can follow; use "
-                              "`coupling explicit`";
     if (frozen_before)
       return name_of(other) + " stands before this fix, so that the fluid would move its grains; "
                               "define it after this fix";

@@ -2,6 +2,7 @@
 // `fix pfv`: what the flow has to know of the grains for the coupling that is wanted.
 #include "fix_pfv.h"
 
+#include "pfv/error.hpp"
 #include "pfv/time_step.hpp"
 
 #include "error.h"
@@ -31,19 +32,20 @@ double FixPfv::flow_step() const { return settings_.steps.couple_every * update-
 /// One call of the flow, over `dt` (s); rank 0.
 void FixPfv::call_flow(double dt, bool commit) {
   const pfv::GrainDynamics dynamics =
-      needs_forces() ? grains_.dynamics(pistons_) : pfv::GrainDynamics{};
+      needs_forces() ? grains_.dynamics(pistons_, bodies_.rigid()) : pfv::GrainDynamics{};
+  const std::string& obstacle = obstacle_.empty() && needs_forces() ? bodies_.obstacle() : obstacle_;
+  if (settings_.steps.coupling != pfv::Coupling::automatic && !obstacle.empty()) throw pfv::InputError(obstacle);
   flow_->advance(grains_.packing(), dt,
                  {settings_.steps.coupling, needs_forces() ? &dynamics : nullptr, commit,
-                  settings_.steps.safety, obstacle_});
+                  settings_.steps.safety, obstacle});
 }
 
 /// Where the time step stands now; its warnings, once a run. Rank 0.
 pfv::TimeStepCheck FixPfv::look_at_time_step() {
   const pfv::TimeStepCheck check = pfv::check_time_step(*flow_, grains_.packing(), grains_.masses(),
-                                                        pistons_, flow_step());
+                                                        pistons_, flow_step(), bodies_.rigid());
   said_.network = flow_->retriangulations();
-  const char* remedy = rigid_bodies_ ? " (rigid bodies have no other coupling)"
-                                     : ", `coupling staged` or `coupling implicit`";
+  const char* remedy = ", `coupling staged` or `coupling implicit`";
   const std::vector<std::string> warnings =
       pfv::warnings_of(check, settings_.steps.couple_every, settings_.steps.safety, remedy);
   if (!said_.time_step)

@@ -10,7 +10,8 @@ INTEGERS = "spheres hidden outside pores unknowns threads peak_memory_bytes".spl
 NUMBERS = ("porosity pore_volume solid_area inflow outflow volume_rate_sum storage_rate mass_error "
            "fluid_volume fluid_came_in fluid_balance_error force_balance_error residual").split()
 COUNTS = ("triangulate order factor solve correction_solve limit_solve query_solve background force_matrix "
-          "volume_rate degenerate_throats merged_pores pinned_pores open_water").split()
+          "volume_rate degenerate_throats merged_pores pinned_pores open_water "
+          "enclosed_pores joined_pores").split()
 SECONDS = "read triangulate throats assemble order factor solve forces total".split()
 FACES = "xlo xhi ylo yhi zlo zhi".split()
 SINKING = ["--face", "zhi:pressure=0,velocity=-1", "--viscosity", "1"]

@@ -2,6 +2,7 @@
 // Grains that have left the bed: the drag that a network of few pores leaves out.
 #include "pfv/dense_packing.hpp"
 #include "pfv/pfv.hpp"
+#include "physics/bead_mobility.hpp"
 #include "physics/open_water.hpp"
 #include "support/boxes.hpp"
 #include "support/long_steps.hpp"
@@ -96,6 +97,25 @@ TEST(OpenWater, TheCorrectionsOfPlanesFadeAndAreBounded) {
     EXPECT_EQ(contact.towards, bound.towards);
     EXPECT_GT(contact.towards, 0.2);
   }
+}
+
+// Two spheres that touch: Stimson & Jeffery (1926), 2 x 0.645 of one sphere's drag along their axis; Goldman, Cox &
+// Brenner (1966), 2 x 0.725 across it.
+TEST(OpenWater, BeadsOfABodyShareTheDragThatTheyHaveTogether) {
+  pfv::Spheres pair;
+  pair.centres.resize(3, 2);
+  pair.centres << 0.0, 2.0, 0.0, 0.0, 0.0, 0.0;
+  pair.radii = Eigen::Vector2d::Ones();
+  const auto drags = pfv::drags_of_beads(pair, {0, 1});
+  const Eigen::Matrix3d sum = drags[0] + drags[1];
+  EXPECT_NEAR(sum(0, 0) / 1.290, 1.0, 0.06);
+  EXPECT_NEAR(sum(1, 1) / 1.450, 1.0, 0.06);
+  EXPECT_NEAR(sum(2, 2), sum(1, 1), 1e-12);
+  pair.centres(0, 1) = 1e-9;  // one sphere written twice
+  EXPECT_NEAR((pfv::drags_of_beads(pair, {0, 1})[0] + pfv::drags_of_beads(pair, {0, 1})[1]).trace(), 3.0, 1e-6);
+  for (const double r : {0.3, 0.7, 1.5, 1.7})  // no jump where one enters the other
+    EXPECT_NEAR((pfv::bead_mobility(1.0, 0.7, {r - 1e-9, 0, 0}) - pfv::bead_mobility(1.0, 0.7, {r + 1e-9, 0, 0})).norm(),
+                0.0, 1e-7) << r;
 }
 
 pfv::PackingArrays cloud(int count, double fraction, std::uint64_t seed) {

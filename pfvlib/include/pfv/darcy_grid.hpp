@@ -54,9 +54,10 @@ class DarcyGrid final : public FlowModel {
   double pressure_at(const Eigen::Vector3d& place) const override;
   double plane_pressure(int axis, double position) const override;
   double mean_pressure() const override;
-  /// With the drag of the last call, linearised. Cost: some 20 to 40 solves.
-  double time_step_limit(const Eigen::VectorXd& masses,
-                         const std::vector<Piston>& pistons = {}) override;
+  /// With the drag of the last call, linearised. Cost: some 20 to 40 solves. It knows no bodies: the masses of
+  /// their spheres are read, like others.
+  double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons = {},
+                         const std::vector<RigidBody>& bodies = {}) override;
   /// Looks at the porosity after the first.
   std::int64_t retriangulations() const override;
   std::vector<int> hidden() const override { return {}; }  ///< every grain displaces fluid

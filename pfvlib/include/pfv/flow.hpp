@@ -88,8 +88,8 @@ class Flow final : public FlowModel {
   double mean_pressure() const override;
   /// dt < 2 / lambda_max(M^-1 S G^-1 E). Cost: some 20 to 40 solves for a new network, none when it
   /// was asked before.
-  double time_step_limit(const Eigen::VectorXd& masses,
-                         const std::vector<Piston>& pistons = {}) override;
+  double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons = {},
+                         const std::vector<RigidBody>& bodies = {}) override;
   /// V^k of these spheres (columns of the packing): the fluid answers the velocity v of sphere k alone,
   /// all others, faces and imposed pressures held, with the force -V^k v on it, N s/m (thesis
   /// eqs. 4.10-4.16); 0 for hidden and left-out spheres. Cost: three solves a sphere, on the kept factor.

@@ -46,6 +46,17 @@ inline Piston piston_of(const std::vector<Piston>& pistons, int face) {
   return face < static_cast<int>(pistons.size()) ? pistons[face] : Piston{};
 }
 
+/// How a rigid body of several spheres (Packing::bodies) yields to forces, and what acts on it beside those on its
+/// spheres.
+struct RigidBody {
+  Eigen::Matrix3Xd arms;  ///< m, from its centre of mass to each of its spheres, in the order of the packing
+  Eigen::Vector3d masses;    ///< kg, > 0, along x, y, z: its mass; infinite along what it is held
+  Eigen::Vector3d inertias;  ///< kg m², > 0, about its principal axes; infinite about what it does not turn
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< the principal axes, one a column
+  Eigen::Vector3d other_force = Eigen::Vector3d::Zero();   ///< N: its weight, where that is not on its spheres
+  Eigen::Vector3d other_torque = Eigen::Vector3d::Zero();  ///< N m, about its centre of mass
+};
+
 /// What a staged or implicit step must know of the grains, one entry (or column) a sphere of the
 /// packing, and of the faces.
 struct GrainDynamics {
@@ -56,6 +67,8 @@ struct GrainDynamics {
   Eigen::Map<const Eigen::Matrix3Xd> other_torques{nullptr, 3, 0};  ///< N m; empty: none
   Eigen::Map<const Eigen::VectorXd> inertias{nullptr, 0};  ///< kg m²; empty: 2/5 m r²; infinite: a grain that
                                                            ///< keeps its spin
+  /// In the order of Packing::bodies. Masses and inertias of the spheres that they hold are not read.
+  std::vector<RigidBody> bodies{};
 };
 
 /// How to take a step.
@@ -146,9 +159,10 @@ class FlowModel {
   virtual double mean_pressure() const = 0;
   /// The limit of the explicit coupling, dt < 2 / lambda_max of the drag, s, by power iteration on
   /// the kept factor (masses in kg, one a sphere of the last packing; faces that are pistons count with
-  /// theirs). Infinite where nothing resists.
-  virtual double time_step_limit(const Eigen::VectorXd& masses,
-                                 const std::vector<Piston>& pistons = {}) = 0;
+  /// theirs; spheres of rigid bodies move with these, and their own masses are not read). Infinite where nothing
+  /// resists.
+  virtual double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons = {},
+                                 const std::vector<RigidBody>& bodies = {}) = 0;
   virtual std::int64_t retriangulations() const = 0;  ///< rebuilds after the first
   virtual std::vector<int> hidden() const = 0;  ///< columns of the packing that the fluid cannot see
   /// Hidden spheres plus those left out because their centre is outside the container.

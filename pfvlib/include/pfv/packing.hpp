@@ -19,9 +19,13 @@ namespace pfv {
 /// | velocities | 3 x N | m/s  | empty (3 x 0): the grains are at rest and no volume  |
 /// |            |       |      | rate is computed                                     |
 /// | angular_velocities | 3 x N | rad/s | about the centres; empty (3 x 0): nothing spins |
-/// | displaced_ | N     | m³   | what each sphere's lift counts: of spheres that       |
-/// | volumes    |       |      | overlap in one rigid body its share of their union    |
-/// |            |       |      | (pfv/union_parts.hpp); empty: whole spheres           |
+/// | displaced_ | N     | m³   | what each sphere's lift and the fluid's volume count: |
+/// | volumes    |       |      | of spheres that overlap in one rigid body its share   |
+/// |            |       |      | of their union (pfv/union_parts.hpp); empty: whole    |
+/// |            |       |      | spheres                                               |
+/// | bodies     | N     | -    | number of the rigid body that holds the sphere, from  |
+/// |            |       |      | 0 on, -1 for none; empty: there are no bodies. What   |
+/// |            |       |      | lies within one body is no fluid                      |
 struct Packing {
   using Ids = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
 
@@ -31,6 +35,7 @@ struct Packing {
   Eigen::Map<const Eigen::Matrix3Xd> velocities{nullptr, 3, 0};
   Eigen::Map<const Eigen::Matrix3Xd> angular_velocities{nullptr, 3, 0};
   Eigen::Map<const Eigen::VectorXd> displaced_volumes{nullptr, 0};
+  Eigen::Map<const Eigen::VectorXi> bodies{nullptr, 0};
 
   Eigen::Index size() const { return ids.size(); }
 };
@@ -47,6 +52,7 @@ struct PackingArrays {
   Eigen::Matrix3Xd velocities = Eigen::Matrix3Xd(3, 0);
   Eigen::Matrix3Xd angular_velocities = Eigen::Matrix3Xd(3, 0);
   Eigen::VectorXd displaced_volumes;
+  Eigen::VectorXi bodies;
 
   Packing view() const {
     return {{ids.data(), ids.size()},
@@ -54,7 +60,8 @@ struct PackingArrays {
             {radii.data(), radii.size()},
             {velocities.data(), 3, velocities.cols()},
             {angular_velocities.data(), 3, angular_velocities.cols()},
-            {displaced_volumes.data(), displaced_volumes.size()}};
+            {displaced_volumes.data(), displaced_volumes.size()},
+            {bodies.data(), bodies.size()}};
   }
 };
 

@@ -37,6 +37,9 @@ struct Counts {
   /// tetrahedra that were merged into another pore; pores at rest without any way to a pressure.
   std::int64_t degenerate_throats = 0, merged_pores = 0, pinned_pores = 0;
   std::int64_t open_water = 0;  ///< of the present network: spheres that are braked as in open water
+  /// Pores within one rigid body, which are no fluid; pores at bodies that overlaps have closed, which share the
+  /// pressure of a neighbour.
+  std::int64_t enclosed_pores = 0, joined_pores = 0;
 };
 
 /// CPU seconds of the process, all threads, summed over the life of the Flow.
@@ -103,6 +106,8 @@ void for_each_entry(const Counts& counts, const See& see) {
   see("merged_pores", counts.merged_pores);
   see("pinned_pores", counts.pinned_pores);
   see("open_water", counts.open_water);
+  see("enclosed_pores", counts.enclosed_pores);
+  see("joined_pores", counts.joined_pores);
 }
 template <class See>
 void for_each_entry(const Seconds& seconds, const See& see) {

@@ -19,6 +19,7 @@ struct SolvedInstant {
   double motion;                           ///< sum of |v| r² of the grains, m³/s
   double load_on_faces;                    ///< N: the largest on a face beside the fluid's, as far as it is known
   double retriangulation_strain;
+  const std::vector<RigidBody>* bodies = nullptr;  ///< in the order of Packing::bodies; null: none
 };
 
 /// What a host needs between two solves; small enough to be told to all ranks.

@@ -34,10 +34,12 @@ struct TimeStepCheck {
   std::string text() const;
 };
 
-/// Of a model that holds a result. `masses` in kg, one a sphere of `packing`; `step`, s, between two solves.
+/// Of a model that holds a result. `masses` in kg, one a sphere of `packing`; `bodies` in the order of
+/// Packing::bodies; `step`, s, between two solves.
 /// Cost: that of FlowModel::time_step_limit.
 TimeStepCheck check_time_step(FlowModel& flow, const Packing& packing, const Eigen::VectorXd& masses,
-                              const std::vector<Piston>& pistons, double step);
+                              const std::vector<Piston>& pistons, double step,
+                              const std::vector<RigidBody>& bodies = {});
 
 /// What a host that solves every `held` of its steps should be warned of, a line each. `safety`: part of the limit
 /// that a step may reach; `remedy`: what it can take instead of a shorter step, or why there is nothing.

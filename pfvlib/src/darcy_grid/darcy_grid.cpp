@@ -134,8 +134,8 @@ double DarcyGrid::mean_pressure() const {
   return fluid.sum() > 0.0 ? fluid.dot(data_->last.pressures) / fluid.sum() : 0.0;
 }
 
-double DarcyGrid::time_step_limit(const Eigen::VectorXd& masses,
-                                  const std::vector<Piston>& pistons) {
+double DarcyGrid::time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
+                                  const std::vector<RigidBody>&) {
   data_->require_result();
   return data_->time_step_limit(masses, pistons);
 }

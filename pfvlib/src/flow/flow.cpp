@@ -95,13 +95,14 @@ const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
 }
 
 double Flow::Parts::time_step_limit(const Eigen::VectorXd& masses,
-                                    const std::vector<Piston>& pistons) {
-  return schemes.limit.of(network(), problem(), keeper.packed(), masses, pistons, work);
+                                    const std::vector<Piston>& pistons,
+                                    const std::vector<RigidBody>& bodies) {
+  return schemes.limit.of(network(), problem(), keeper.packed(), masses, pistons, bodies, work);
 }
 
 void Flow::Parts::choose_coupling(double dt, const Step& step) {
   const GrainDynamics& dynamics = *step.dynamics;
-  schemes.choice.choose(time_step_limit(dynamics.masses, dynamics.pistons), dt, step, options,
+  schemes.choice.choose(time_step_limit(dynamics.masses, dynamics.pistons, dynamics.bodies), dt, step, options,
                         dynamics.masses.size(), keeper.rebuilds());
 }
 

@@ -59,7 +59,8 @@ struct Flow::Parts {
                       const GrainDynamics* dynamics, bool commit);
   /// The same with the coupling that is cheapest and stable.
   const Forces& solve_by_choice(const Packing& packing, double dt, const Step& step);
-  double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons);
+  double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
+                         const std::vector<RigidBody>& bodies);
 
   /// Throws InputError without a result.
   BuiltNetwork& network() const;

@@ -70,9 +70,9 @@ double Flow::mean_pressure() const {
   return pfv::mean_pressure(parts_->network(), parts_->solution);
 }
 
-double Flow::time_step_limit(const Eigen::VectorXd& masses,
-                             const std::vector<Piston>& pistons) {
-  return parts_->time_step_limit(masses, pistons);
+double Flow::time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
+                             const std::vector<RigidBody>& bodies) {
+  return parts_->time_step_limit(masses, pistons, bodies);
 }
 
 std::vector<Eigen::Matrix3d> Flow::viscosity_matrices(const std::vector<int>& columns) const {

@@ -24,6 +24,9 @@ void check_shapes(const Packing& packing) {
   if (packing.displaced_volumes.size() != n && packing.displaced_volumes.size() != 0)
     throw InputError("packing: " + std::to_string(packing.displaced_volumes.size()) +
                      " displaced volumes for " + std::to_string(n) + " spheres; give one a sphere");
+  if (packing.bodies.size() != n && packing.bodies.size() != 0)
+    throw InputError("packing: " + std::to_string(packing.bodies.size()) + " numbers of bodies for " +
+                     std::to_string(n) + " spheres; give one a sphere, -1 where there is none");
   if (packing.positions.cols() != n || packing.radii.size() != n ||
       (packing.velocities.cols() != n && packing.velocities.cols() != 0))
     throw InputError("packing: ids, positions, radii and velocities have different lengths (" +
@@ -48,6 +51,10 @@ void check_values(const Packing& packing) {
                        {{packing.ids[k]}, {}});
     if (packing.displaced_volumes.size() > 0 && !std::isfinite(packing.displaced_volumes[k]))
       throw InputError(sphere + ": its displaced volume is not finite", {{packing.ids[k]}, {}});
+    if (packing.bodies.size() > 0 && packing.bodies[k] < -1)
+      throw InputError(sphere + ": there is no rigid body " + std::to_string(packing.bodies[k]) +
+                           "; they are counted from 0 on, -1 is none",
+                       {{packing.ids[k]}, {}});
   }
 }
 
@@ -132,6 +139,12 @@ InputError outside_of(const Container& container, const Packing& packing, Eigen:
 
 }  // namespace
 
+namespace {
+
+bool has_bodies(const Packing& packing) { return (packing.bodies.array() >= 0).any(); }
+
+}  // namespace
+
 ActiveGrains select_grains(const Packing& packing, const Container& container, OutsideGrains outside) {
   check_shapes(packing);
   check_values(packing);
@@ -174,7 +187,17 @@ ActiveGrains select_grains(const Packing& packing, const Container& container, O
             spheres.edges[axis] * std::floor(spheres.centres(axis, i) / spheres.edges[axis]);
     spheres.radii[i] = packing.radii[k];
   }
+  if (packing.displaced_volumes.size() > 0) spheres.displaced = packing.displaced_volumes(grains.columns);
+  if (has_bodies(packing)) {
+    grains.held = packing.bodies;
+    for (const int k : grains.columns) grains.body.push_back(packing.bodies[k]);
+  }
   return grains;
+}
+
+bool holds_the_same(const ActiveGrains& grains, const Packing& packing) {
+  if (!has_bodies(packing)) return grains.held.size() == 0;
+  return grains.held.size() == packing.bodies.size() && grains.held == packing.bodies;
 }
 
 void gather_velocities(const Packing& packing, const std::vector<int>& columns,

@@ -14,6 +14,9 @@ namespace pfv {
 struct ActiveGrains {
   std::vector<int> columns;  ///< of the packing, ascending
   Spheres spheres;           ///< the same grains, in coordinates from the lower corner of the box around it
+  // without rigid bodies both are empty
+  Eigen::VectorXi held;   ///< the packing's bodies, one entry for each of its spheres
+  std::vector<int> body;  ///< of each grain, -1 for none
 };
 
 /// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0 or a
@@ -21,6 +24,8 @@ struct ActiveGrains {
 /// container or no grain at all.
 ActiveGrains select_grains(const Packing& packing, const Container& container, OutsideGrains outside);
 
+/// Whether rigid bodies hold the same spheres as when the grains were selected.
+bool holds_the_same(const ActiveGrains& grains, const Packing& packing);
 /// Cheap tests of each step.
 bool is_inside(const Packing& packing, Eigen::Index column, const Container& container);
 /// Moment of inertia of a solid sphere, kg m².

@@ -19,6 +19,7 @@ namespace pfv {
 /// of one pore gives.
 struct ForceMatrix {
   int spheres = 0;
+  int bodies = 0;  ///< the last rows are theirs (physics/rigid_bodies.hpp)
   bool wall_moments = false;  ///< it has those on walls
   bool stretching = false;    ///< it has the rows of a periodic cell's faces (physics/cell_stretching.hpp)
   std::vector<int> row_begin{0};

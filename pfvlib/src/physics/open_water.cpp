@@ -2,6 +2,7 @@
 #include "physics/open_water.hpp"
 
 #include "geometry/pi.hpp"
+#include "physics/bead_mobility.hpp"
 #include "physics/isotropic_drag.hpp"
 
 #include <Eigen/Cholesky>
@@ -108,6 +109,21 @@ Matrix3d wall_correction(const Container& container, const Spheres& spheres, int
   return parts.eigenvectors() * bounded.cwiseInverse().asDiagonal() * parts.eigenvectors().transpose();
 }
 
+/// Drag in unbounded fluid over 6 pi mu, m, of the spheres in open water that a body holds.
+std::map<int, Matrix3d> drags_in_bodies(const Spheres& spheres, const std::vector<int>& body, const std::vector<int>& open) {
+  std::map<int, std::vector<int>> members;
+  for (const int k : open)
+    if (!body.empty() && body[k] >= 0) members[body[k]];
+  for (int k = 0; k < static_cast<int>(body.size()); ++k)
+    if (const auto found = members.find(body[k]); found != members.end()) found->second.push_back(k);
+  std::map<int, Matrix3d> drags;
+  for (const auto& [number, beads] : members) {
+    const std::vector<Matrix3d> of_beads = drags_of_beads(spheres, beads);
+    for (std::size_t i = 0; i < beads.size(); ++i) drags[beads[i]] = of_beads[i];
+  }
+  return drags;
+}
+
 Matrix3d positive_part(const Matrix3d& matrix) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(matrix);
   return parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() * parts.eigenvectors().transpose();
@@ -117,8 +133,8 @@ Matrix3d positive_part(const Matrix3d& matrix) {
 class Surroundings {
  public:
   Surroundings(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices,
-               const Container& container)
-      : network_(network), spheres_(spheres), vertices_(vertices), container_(container) {}
+               const Container& container, const std::vector<int>& body)
+      : network_(network), spheres_(spheres), vertices_(vertices), container_(container), body_(body) {}
 
   void look(const Throats& throats, std::vector<OpenWaterDrag>& drags) {
     std::vector<int> place(spheres_.size(), -1);
@@ -148,7 +164,7 @@ class Surroundings {
     const double weight = std::max(area, 0.0);
     if (is_wall(other)) {
       view.of_wall[wall_number(other)] += weight;
-    } else if (const int sphere = network_.vertex_sphere[other]; sphere != network_.vertex_sphere[own]) {
+    } else if (const int sphere = network_.vertex_sphere[other]; !move_together(network_.vertex_sphere[own], sphere)) {
       auto& [column, seen] = view.of_sphere[spheres_.ids[sphere]];
       column = sphere;
       seen += weight;
@@ -157,6 +173,10 @@ class Surroundings {
       return;
     }
     view.all += weight;
+  }
+
+  bool move_together(int one, int other) const {
+    return one == other || (!body_.empty() && body_[one] >= 0 && body_[one] == body_[other]);
   }
 
   Vector3d periods_of(Vertex vertex) const {
@@ -207,6 +227,7 @@ class Surroundings {
   const PoreNetwork& network_;
   const Spheres &spheres_, &vertices_;
   const Container& container_;
+  const std::vector<int>& body_;
   std::vector<View> views_;
 };
 
@@ -243,7 +264,7 @@ std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Sp
                                             const Throats& throats, const Conductances& conductances,
                                             const ForceMatrix& matrix, const std::vector<char>& imposed,
                                             const Container& container, double viscosity,
-                                            const std::vector<ResistanceBlock>& others) {
+                                            const std::vector<ResistanceBlock>& others, const std::vector<int>& body) {
   const std::vector<double> fractions = solid_fractions_around(network, throats, vertices);
   std::vector<int> open;
   for (int k = 0; k < static_cast<int>(fractions.size()); ++k)
@@ -252,16 +273,22 @@ std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Sp
   if (open.empty()) return drags;
   std::sort(open.begin(), open.end(), [&](int a, int b) { return spheres.ids[a] < spheres.ids[b]; });
   const ThroatLists lists(network);
+  const std::map<int, Matrix3d> in_bodies = drags_in_bodies(spheres, body, open);
+  const auto unbounded = [&](int k) {
+    const auto found = in_bodies.find(k);
+    return found == in_bodies.end() ? Matrix3d(spheres.radii[k] * Matrix3d::Identity()) : found->second;
+  };
   std::vector<Matrix3d> known(spheres.size(), Matrix3d::Zero());
   for (const auto& [of, by, block] : others)
     if (of == by) known[of] += block;
   for (const int k : open) {
     const double stokes = 6.0 * pi * viscosity * spheres.radii[k];
-    const Matrix3d left_out = positive_part(stokes * wall_correction(container, spheres, k) -
+    const Matrix3d walls = wall_correction(container, spheres, k), free = unbounded(k);
+    const Matrix3d left_out = positive_part(3.0 * pi * viscosity * (walls * free + free * walls) -
                                             drag_of_pores(network, conductances, matrix, imposed, lists, k) - known[k]);
     if (left_out.diagonal().maxCoeff() > negligible * stokes) drags.push_back({k, left_out, {}, Vector3d::Zero(), {}});
   }
-  Surroundings(network, spheres, vertices, container).look(throats, drags);
+  Surroundings(network, spheres, vertices, container, body).look(throats, drags);
   return drags;
 }
 

@@ -26,7 +26,7 @@ struct OpenWaterDrag {
 
   int sphere;
   Eigen::Matrix3d resistance;         ///< symmetric, >= 0, kg/s
-  std::vector<Neighbour> neighbours;  ///< none of its own images
+  std::vector<Neighbour> neighbours;  ///< neither its own images nor spheres of its body
   Eigen::Vector3d periods = Eigen::Vector3d::Zero();  ///< mean number by which images stand beside their spheres
   struct Face {
     int column;              ///< in a Motion
@@ -49,14 +49,15 @@ struct OpenWaterDrag {
 /// Prieve (2000, Journal of Chemical Physics 113, 1228) towards them, one after the other; of the nearest slip or
 /// open one the image of a Stokeslet; nearer than 1.5 radii that of 1.5. In a round wall no less than Haberman's on
 /// its axis.
+/// Spheres of a rigid body share the drag that they have together (physics/bead_mobility.hpp).
 ///
 /// In a dense bed there is none. Pure; cost: a pass over S, and some 20 µs a sphere in open water.
-/// `imposed`: of each pore, whether its pressure is given; `matrix`: S.
+/// `imposed`: of each pore, whether its pressure is given; `matrix`: S. `body`: of each sphere, -1 for none; or no entries.
 std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices,
                                             const Throats& throats, const Conductances& conductances,
                                             const ForceMatrix& matrix, const std::vector<char>& imposed,
                                             const Container& container, double viscosity,
-                                            const std::vector<ResistanceBlock>& others);
+                                            const std::vector<ResistanceBlock>& others, const std::vector<int>& body);
 
 /// Velocity of a sphere beside what stands around it, m/s. `of_periods`: how much faster an image moves than its
 /// sphere, one column for a period along each axis, m/s.

@@ -132,8 +132,9 @@ std::vector<double> freed_pins(const PressureSystem& system, const Unknowns& unk
 
 }  // namespace
 
-Matrix6Xd of_faces(Matrix6Xd yielding, int spheres) {
+Matrix6Xd of_faces(Matrix6Xd yielding, int spheres, int bodies) {
   yielding.leftCols(spheres).setZero();
+  yielding.rightCols(bodies).setZero();
   return yielding;
 }
 
@@ -144,27 +145,53 @@ using Velocity = ImplicitSystem::Velocity;
 /// M/dt + R, row by row.
 using SparseRows = std::vector<std::map<int, double>>;
 
-std::vector<Velocity> unknown_velocities(const Matrix6Xd& yielding, int spheres) {
+/// Of the spheres and, behind the faces, of the bodies.
+std::vector<Velocity> unknown_velocities(const Matrix6Xd& yielding, int spheres, int bodies) {
   std::vector<Velocity> velocities;
-  for (int k = 0; k < spheres; ++k)
+  const int columns = static_cast<int>(yielding.cols());
+  for (int k = 0; k < columns; ++k)
     for (int c = 0; c < 6; ++c)
-      if (yielding(c, k) > 0.0) velocities.push_back({k, c});
+      if ((k < spheres || k >= columns - bodies) && yielding(c, k) > 0.0) velocities.push_back({k, c});
   return velocities;
 }
 
-SparseRows resistances(const std::vector<Velocity>& velocities, const Matrix6Xd& yielding, int spheres,
-                       const std::vector<ResistanceBlock>& resistance) {
-  std::vector<std::array<int, 3>> number(spheres, {-1, -1, -1});
-  SparseRows rows(velocities.size());
+/// A sphere's velocity as a sum of unknown ones, each with its direction.
+struct Carrier {
+  int unknown;
+  Eigen::Vector3d direction;
+};
+
+/// Of each sphere: its own velocity, or what its body's gives it.
+std::vector<std::vector<Carrier>> carriers_of(const std::vector<Velocity>& velocities, int spheres,
+                                              const RigidBodies* bodies) {
+  std::vector<std::vector<Carrier>> carriers(spheres);
+  std::vector<std::vector<int>> of_body(bodies ? bodies->count() : 0);
   for (int i = 0; i < static_cast<int>(velocities.size()); ++i) {
-    const auto [grain, component] = velocities[i];
-    if (component < 3) number[grain][component] = i;
-    rows[i][i] = 1.0 / yielding(component, grain);
+    const auto [mover, component] = velocities[i];
+    if (mover >= spheres)
+      of_body[mover - bodies->first].push_back(i);
+    else if (component < 3)
+      carriers[mover].push_back({i, Eigen::Vector3d::Unit(component)});
   }
+  for (std::size_t m = 0; bodies && m < bodies->members.size(); ++m) {
+    const auto& member = bodies->members[m];
+    for (const int i : of_body[member.body])
+      carriers[member.sphere].push_back(
+          {i, bodies->of_sphere(member, Vector6d::Unit(velocities[i].component)).head<3>()});
+  }
+  return carriers;
+}
+
+SparseRows resistances(const std::vector<Velocity>& velocities, const Matrix6Xd& yielding, int spheres,
+                       const std::vector<ResistanceBlock>& resistance, const RigidBodies* bodies) {
+  const auto carriers = carriers_of(velocities, spheres, bodies);
+  SparseRows rows(velocities.size());
+  for (int i = 0; i < static_cast<int>(velocities.size()); ++i)
+    rows[i][i] = 1.0 / yielding(velocities[i].component, velocities[i].mover);
   for (const auto& [of, by, block] : resistance)
-    for (int c = 0; c < 3; ++c)
-      for (int d = 0; d < 3; ++d)
-        if (number[of][c] >= 0 && number[by][d] >= 0) rows[number[of][c]][number[by][d]] += block(c, d);
+    for (const Carrier& row : carriers[of])
+      for (const Carrier& column : carriers[by])
+        rows[row.unknown][column.unknown] += row.direction.dot(block * column.direction);
   return rows;
 }
 
@@ -175,7 +202,7 @@ void add_entry(SymmetricMatrix& matrix, int column, double value) {
   matrix.value.push_back(value);
 }
 
-/// [ -a  -S^T ]   `loads`: S of the grains that yield, by row and by unknown; `first`: where the velocities of
+/// [ -a  -S^T ]   `loads`: S of the grains and bodies that yield, by row and by unknown; `first`: where the velocities of
 /// [ -S   h   ]   each of these rows begin.
 SymmetricMatrix joined(const SymmetricMatrix& a, const YieldingRows& loads, const std::vector<int>& first,
                        const std::vector<Velocity>& velocities, const SparseRows& h) {
@@ -195,11 +222,11 @@ SymmetricMatrix joined(const SymmetricMatrix& a, const YieldingRows& loads, cons
   return m;
 }
 
-/// Where the velocities of each grain among them begin, and their end.
+/// Where the velocities of each mover among them begin, and their end.
 std::vector<int> begins_of(const std::vector<Velocity>& velocities) {
   std::vector<int> first;
   for (int v = 0; v < static_cast<int>(velocities.size()); ++v)
-    if (v == 0 || velocities[v].grain != velocities[v - 1].grain) first.push_back(v);
+    if (v == 0 || velocities[v].mover != velocities[v - 1].mover) first.push_back(v);
   first.push_back(static_cast<int>(velocities.size()));
   return first;
 }
@@ -208,21 +235,21 @@ std::vector<int> begins_of(const std::vector<Velocity>& velocities) {
 
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
                                const Bases& bases, const Matrix6Xd& yielding,
-                               const std::vector<ResistanceBlock>& resistance) {
+                               const std::vector<ResistanceBlock>& resistance, const RigidBodies* bodies) {
   const int spheres = forces.spheres;
   ImplicitSystem result;
   result.pressures = unknowns.count;
-  result.velocities = unknown_velocities(yielding, spheres);
+  result.velocities = unknown_velocities(yielding, spheres, forces.bodies);
   const std::vector<double> pins =
       freed_pins(system, unknowns, yielding_rows(unknowns, forces, bases, yielding), result.isolated);
   for (int k = 0; k < unknowns.count; ++k)
     if (pins[k] != 0.0) result.last.push_back(k);
-  const YieldingRows faces = yielding_rows(unknowns, forces, bases, of_faces(yielding, spheres));
+  const YieldingRows faces = yielding_rows(unknowns, forces, bases, of_faces(yielding, spheres, forces.bodies));
   Matrix6Xd grains = Matrix6Xd::Zero(6, yielding.cols());
-  for (const auto& [grain, component] : result.velocities) grains(component, grain) = 1.0;
+  for (const auto& [mover, component] : result.velocities) grains(component, mover) = 1.0;
   result.matrix = joined(sum_of(system.matrix, pins, faces), yielding_rows(unknowns, forces, bases, grains),
                          begins_of(result.velocities), result.velocities,
-                         resistances(result.velocities, yielding, spheres, resistance));
+                         resistances(result.velocities, yielding, spheres, resistance, bodies));
   result.signs.assign(result.matrix.size(), 1.0);
   std::fill_n(result.signs.begin(), result.pressures, -1.0);
   return result;

@@ -3,6 +3,7 @@
 
 #include "physics/force_matrix.hpp"
 #include "physics/resistance.hpp"
+#include "physics/rigid_bodies.hpp"
 #include "physics/volume_rates.hpp"
 #include "solve/linear_solver.hpp"
 #include "solve/pressure_system.hpp"
@@ -22,7 +23,7 @@ namespace pfv {
 /// leaves G + S^T B S; but that joins all pores around a sphere, and its factor has 1.4 times as many entries.
 struct ImplicitSystem {
   struct Velocity {
-    int grain, component;  ///< column and row of a Motion: 0-2 velocity, 3-5 spin
+    int mover, component;  ///< column and row of a (wide) motion: 0-2 velocity, 3-5 spin; no face
   };
   SymmetricMatrix matrix;
   std::vector<double> signs;  ///< of the pivots: -1 of the pressures, which come first, 1 of the velocities
@@ -35,14 +36,14 @@ struct ImplicitSystem {
   std::vector<int> last;
 };
 
-/// `system`: G with storage. `forces`: S, to which the pressures on the faces come. `yielding`: the diagonal of
-/// B, dt over mass (s/kg) or inertia (s/(kg m²)) for each row of S, 0 for what no force moves. `resistance`: R,
-/// among spheres.
+/// `system`: G with storage. `forces`: S, to which the pressures on the faces come; with rigid bodies that on them
+/// (physics/rigid_bodies.hpp), and `bodies` these, else null. `yielding`: the diagonal of B, dt over mass (s/kg) or
+/// inertia (s/(kg m²)) for each row of S, 0 for what no force moves. `resistance`: R, among spheres.
 ImplicitSystem assemble_implicit(const PressureSystem& system, const Unknowns& unknowns, const ForceMatrix& forces,
-                               const Bases& bases, const Matrix6Xd& yielding,
-                               const std::vector<ResistanceBlock>& resistance);
+                                 const Bases& bases, const Matrix6Xd& yielding,
+                                 const std::vector<ResistanceBlock>& resistance, const RigidBodies* bodies);
 
-/// Of the faces alone: what is eliminated.
-Matrix6Xd of_faces(Matrix6Xd yielding, int spheres);
+/// Of the faces alone, which stand between the spheres and so many bodies: what is eliminated.
+Matrix6Xd of_faces(Matrix6Xd yielding, int spheres, int bodies);
 
 }  // namespace pfv

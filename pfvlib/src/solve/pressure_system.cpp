@@ -74,6 +74,8 @@ SymmetricMatrix compress(const Triplets& triplets, const std::vector<double>& di
   return matrix;
 }
 
+}  // namespace
+
 /// Sets of unknowns that open throats join; those that touch an imposed pressure are not isolated.
 std::vector<Isolated> find_isolated(const PoreNetwork& network,
                                     const std::vector<double>& conductances,
@@ -103,8 +105,6 @@ std::vector<Isolated> find_isolated(const PoreNetwork& network,
   }
   return isolated;
 }
-
-}  // namespace
 
 Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
                          const Container& container) {
@@ -164,7 +164,7 @@ PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& c
     if (c <= 0.0) continue;
     const auto [p, q] = network.throat_pores[t];
     const int i = unknowns.of_pore[p], j = unknowns.of_pore[q];
-    if (i == j) continue;  // two imposed pressures, or one shared unknown
+    if (i == j) continue;  // two without unknowns, or one shared unknown
     if (i >= 0) diagonal[i] += c;
     if (j >= 0) diagonal[j] += c;
     if (i >= 0 && j >= 0) {

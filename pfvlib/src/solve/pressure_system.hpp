@@ -16,7 +16,8 @@ struct Unknowns {
   static constexpr int imposed = -1;
   std::vector<int> of_pore;      ///< its unknown, or `imposed`
   std::vector<int> of_boundary;  ///< the unknown that the pores of a flux boundary share, or -1
-  std::vector<int> imposed_pores;  ///< those without an unknown
+  std::vector<int> imposed_pores;  ///< those of imposed pressure
+  std::vector<int> enclosed_pores;  ///< within rigid bodies: neither (solve/closed_pores.hpp)
   int count = 0;
 };
 
@@ -36,6 +37,10 @@ struct Isolated {
   int unknown;  ///< the one that is held at the reference pressure
   double pin;   ///< what holds it: added to its diagonal
 };
+
+/// Those that there are; nothing pinned yet.
+std::vector<Isolated> find_isolated(const PoreNetwork& network, const std::vector<double>& conductances,
+                                    const Unknowns& unknowns);
 
 /// G p = b (Chareyre et al. 2012 eq. 6; thesis eq. 4.8) for the unknown pressures.
 struct PressureSystem {

@@ -50,7 +50,7 @@ struct Task {
 BackgroundRebuild::BackgroundRebuild(const Packing& packing, const Problem& problem, double step,
                                      bool moving) {
   Task task{{packing.ids, packing.positions, packing.radii, Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0),
-             Eigen::VectorXd()},
+             packing.displaced_volumes, packing.bodies},
             problem.container,
             problem.fluid,
             problem.options,

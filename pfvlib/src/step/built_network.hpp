@@ -6,10 +6,12 @@
 #include "physics/conductances.hpp"
 #include "physics/force_matrix.hpp"
 #include "physics/open_water.hpp"
+#include "physics/rigid_bodies.hpp"
 #include "physics/shear_forces.hpp"
 #include "physics/solid_union.hpp"
 #include "physics/throats.hpp"
 #include "physics/volume_rates.hpp"
+#include "solve/closed_pores.hpp"
 #include "solve/linear_solver.hpp"
 #include "problem/container_geometry.hpp"
 #include "solve/pressure_system.hpp"
@@ -50,6 +52,7 @@ struct KeptOperators {
   std::optional<SurfacePressure> surface_pressure;
   std::optional<std::vector<ShearPair>> shear_pairs;
   std::optional<std::vector<OpenWaterDrag>> open_water;
+  std::optional<RigidBodies> bodies;                ///< as they stood when they were first asked for
   std::optional<SolidUnion> solid;
   std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis
 };
@@ -66,6 +69,7 @@ struct BuiltNetwork {
   Conductances conductances;
   Bases bases;  ///< one entry a boundary contact
   Unknowns unknowns;
+  ClosedPores closed;
   std::vector<double> strain_volume;  ///< volume that a pore's strain refers to, bounded below
   KeptSystem kept;
   KeptOperators operators;

@@ -12,14 +12,16 @@ namespace pfv {
 
 namespace {
 
-double volume_of(double radius) {
+double volume_of(const Spheres& spheres, int k) {
+  if (spheres.displaced.size() > 0) return spheres.displaced[k];
+  const double radius = spheres.radii[k];
   return 4.0 / 3.0 * pi * radius * radius * radius;
 }
 
 /// Ids and volumes, by id.
 std::vector<std::pair<std::int64_t, double>> volumes_by_id(const Spheres& spheres) {
   std::vector<std::pair<std::int64_t, double>> volumes(spheres.size());
-  for (int k = 0; k < spheres.size(); ++k) volumes[k] = {spheres.ids[k], volume_of(spheres.radii[k])};
+  for (int k = 0; k < spheres.size(); ++k) volumes[k] = {spheres.ids[k], volume_of(spheres, k)};
   std::sort(volumes.begin(), volumes.end());
   return volumes;
 }
@@ -46,7 +48,7 @@ void compare(const Spheres& before, const Spheres& now, Visit&& visit) {
 
 double fluid_space(double box_volume, const Spheres& spheres) {
   double space = box_volume;
-  for (int k = 0; k < spheres.size(); ++k) space -= volume_of(spheres.radii[k]);
+  for (int k = 0; k < spheres.size(); ++k) space -= volume_of(spheres, k);
   return space;
 }
 

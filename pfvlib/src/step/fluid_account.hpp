@@ -15,7 +15,8 @@ struct FluidAccount {
 };
 
 /// Volume of the fluid in a box: the box less the whole volumes of the grains with their centre in it, whether
-/// they overlap (that is deformation of a contact) or cross a face, m³. May be negative for nested grains.
+/// they overlap (that is deformation of a contact) or cross a face, m³; of those in rigid bodies what they displace.
+/// May be negative for nested grains.
 double fluid_space(double box_volume, const Spheres& spheres);
 
 /// What the grains displace that are in `now` and not in `before`, less those that have gone, m³.

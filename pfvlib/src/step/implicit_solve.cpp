@@ -24,13 +24,18 @@ double ImplicitSolve::residual() const {
 
 namespace {
 
-/// Of the unknown pressures, then of the grains whose velocities are unknown.
+/// Of the unknown pressures, then of what has unknown velocities; a body stands at one of its spheres.
 Eigen::Matrix3Xd places_of(const BuiltNetwork& built, const ImplicitSystem& system) {
   Eigen::Matrix3Xd places(3, system.matrix.size());
   places.leftCols(system.pressures) = unknown_places(built);
   Eigen::Index place = system.pressures;
-  for (const auto& velocity : system.velocities)
-    places.col(place++) = built.grains.spheres.centres.col(velocity.grain);
+  const auto& centres = built.grains.spheres.centres;
+  const RigidBodies* const bodies = bodies_of(built);
+  std::vector<int> sphere_of(bodies ? bodies->count() : 0, 0);
+  for (std::size_t m = 0; bodies && m < bodies->members.size(); ++m)
+    sphere_of[bodies->members[m].body] = bodies->members[m].sphere;
+  for (const auto& [mover, component] : system.velocities)
+    places.col(place++) = centres.col(mover < centres.cols() ? mover : sphere_of[mover - bodies->first]);
   return places;
 }
 
@@ -38,7 +43,7 @@ Eigen::Matrix3Xd places_of(const BuiltNetwork& built, const ImplicitSystem& syst
 Eigen::VectorXd velocities_in(const ImplicitSystem& system, const Matrix6Xd& all) {
   Eigen::VectorXd own(static_cast<Eigen::Index>(system.velocities.size()));
   Eigen::Index row = 0;
-  for (const auto& [grain, component] : system.velocities) own[row++] = all(component, grain);
+  for (const auto& [mover, component] : system.velocities) own[row++] = all(component, mover);
   return own;
 }
 
@@ -66,8 +71,11 @@ void ImplicitSolve::factor(const StepTask& task, Matrix6Xd yielding) {
   const std::vector<int> old_last = std::move(factor_->system.last);
   {
     const PhaseClock clock(work.seconds.assemble);
-    factor_->system = assemble_implicit(built.kept.system, built.unknowns, *built.operators.force_matrix, built.bases,
-                                       yielding, resistance_blocks(built, problem.fluid.viscosity));
+    const ForceMatrix& forces = *built.operators.force_matrix;
+    const RigidBodies* const bodies = bodies_of(built);
+    factor_->system = assemble_implicit(built.kept.system, built.unknowns,
+                                        bodies ? forces_on_bodies(forces, *bodies) : forces, built.bases, yielding,
+                                        resistance_blocks(built, problem.fluid.viscosity), bodies);
   }
   const ImplicitSystem& system = factor_->system;
   if (!factor_->solver || system.matrix.row_begin != old.row_begin || system.matrix.column != old.column ||
@@ -86,21 +94,24 @@ void ImplicitSolve::factor(const StepTask& task, Matrix6Xd yielding) {
 }
 
 /// Motion and rates of the unknowns as they are, and the loads that the motion has to answer, those of shear among
-/// them.
+/// them; wide.
 Loads ImplicitSolve::follow(const StepTask& task, const ForcedMotion& forced, double growth,
                               Solution& solution) const {
   const auto& [built, problem, packing, dynamics, work] = task;
   const ImplicitSystem& system = factor_->system;
   const int spheres = built.grains.spheres.size();
   const Loads pressures = pressure_loads(built, solution);
-  const ForcedMotion faces{forced.start, forced.held, of_faces(factor_->yielding, spheres)};
+  const int count = forced.bodies ? forced.bodies->count() : 0;
+  const ForcedMotion faces{forced.start, forced.held, of_faces(factor_->yielding, spheres, count), forced.bodies};
   solution.motion = faces.moved_by(pressures);
+  Motion gained = no_motion(solution.motion.cols(), count);
   Eigen::Index row = system.pressures;
-  for (const auto& [grain, component] : system.velocities)
-    solution.motion(component, grain) += factor_->unknowns[row++];
+  for (const auto& [mover, component] : system.velocities) gained(component, mover) += factor_->unknowns[row++];
+  solution.motion += forced.bodies ? forced.bodies->spread(gained) : gained;
   rates_of(built, solution.motion, *problem.team, solution.rates);
   spread_over_pores(growth, built.throats, solution.rates);
-  return forced.held + pressures + resisting_forces(built, problem.fluid.viscosity, solution.motion);
+  const Loads resisting = resisting_forces(built, problem.fluid.viscosity, solution.motion);
+  return forced.bodies ? forced.all(pressures + resisting) : Loads(forced.held + pressures + resisting);
 }
 
 /// As refine_pressures: the defects of continuity and of the balance of forces drive a correction of both.

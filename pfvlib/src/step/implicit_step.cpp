@@ -32,7 +32,9 @@ void ImplicitStep::find(const StepTask& task, Solution& solution) {
   check_dynamics(*dynamics, packing, problem.container);
   solution.implicit = true;
   set_motion(built, problem, packing, solution.motion);
-  ForcedMotion forced{solution.motion, {}, yielding_of(built, problem, *dynamics, theta * solution.dt)};
+  check_bodies(dynamics->bodies, built.grains.held);
+  take_bodies(built, problem, dynamics->bodies);
+  ForcedMotion forced{solution.motion, {}, yielding_of(built, problem, *dynamics, theta * solution.dt), bodies_of(built)};
   solution.moving = !at_rest(packing, problem.container, problem.options.torques) ||
                     (forced.yielding.array() > 0.0).any();
   refuse_undetermined(problem, solution.moving);

@@ -29,6 +29,69 @@ void check_sizes(const GrainDynamics& dynamics, Eigen::Index n) {
 
 }  // namespace
 
+Loads ForcedMotion::all(const Loads& loads) const {
+  if (!bodies) return held + loads;
+  Loads wide = bodies->gathered(held.leftCols(bodies->first) + loads);
+  wide.rightCols(bodies->count()) += held.rightCols(bodies->count());
+  return wide;
+}
+
+Motion ForcedMotion::moved_by(const Loads& loads) const {
+  if (!bodies) return start + (yielding.array() * (held + loads).array()).matrix();
+  return start + bodies->spread((yielding.array() * all(loads).array()).matrix());
+}
+
+namespace {
+
+void check_body(const RigidBody& body, int number, Eigen::Index spheres) {
+  const std::string name = "rigid body " + std::to_string(number);
+  if (spheres == 0) throw InputError(name + ": it holds no sphere of the packing; leave it away");
+  if (body.arms.cols() != spheres)
+    throw InputError(name + ": it has " + std::to_string(body.arms.cols()) + " arms for " + std::to_string(spheres) +
+                     " spheres; give one for each sphere of the packing that it holds");
+  if (!body.arms.allFinite() || !body.other_force.allFinite() || !body.other_torque.allFinite())
+    throw InputError(name + ": an arm, its other force or torque is not finite");
+  if (!(body.masses.array() > 0.0).all() || !(body.inertias.array() > 0.0).all())
+    throw InputError(name + ": a mass or inertia is not a positive number; give kg and kg m2");
+  if (!((body.axes.transpose() * body.axes).isIdentity(1e-6)))
+    throw InputError(name + ": its axes are not of unit length and square to each other");
+}
+
+}  // namespace
+
+void check_bodies(const std::vector<RigidBody>& bodies, const Eigen::VectorXi& held) {
+  std::vector<Eigen::Index> spheres(bodies.size(), 0);
+  for (Eigen::Index k = 0; k < held.size(); ++k) {
+    if (held[k] < 0) continue;
+    if (held[k] >= static_cast<int>(bodies.size()))
+      throw InputError("the packing has spheres of a rigid body " + std::to_string(held[k]) + ", but mass and inertia of " +
+                       std::to_string(bodies.size()) + " bodies are given; give those of each body, in the order of "
+                       "Packing::bodies");
+    ++spheres[held[k]];
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) check_body(bodies[b], static_cast<int>(b), spheres[b]);
+}
+
+void take_bodies(BuiltNetwork& built, const Problem& problem, const std::vector<RigidBody>& bodies) {
+  if (built.grains.held.size() == 0 || built.operators.bodies) return;
+  built.operators.bodies =
+      rigid_bodies(built.grains.held, built.grains.columns, problem.container.face_count(), bodies);
+}
+
+const RigidBodies* bodies_of(const BuiltNetwork& built) {
+  return built.operators.bodies ? &*built.operators.bodies : nullptr;
+}
+
+Matrix6Xd yielding_of_bodies(const std::vector<RigidBody>& bodies, double step) {
+  Matrix6Xd result(6, static_cast<Eigen::Index>(bodies.size()));
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    auto own = result.col(static_cast<Eigen::Index>(b));
+    own.head<3>() = step * bodies[b].masses.cwiseInverse();
+    own.tail<3>() = step * bodies[b].inertias.cwiseInverse();
+  }
+  return result;
+}
+
 void check_dynamics(const GrainDynamics& dynamics, const Packing& packing, const Container& container) {
   check_sizes(dynamics, packing.size());
   for (Eigen::Index k = 0; k < packing.size(); ++k) {
@@ -63,7 +126,8 @@ Matrix6Xd yielding_of(const BuiltNetwork& built, const Problem& problem, const G
   const std::vector<int>& columns = built.grains.columns;
   const auto count = static_cast<Eigen::Index>(columns.size());
   const Container& container = problem.container;
-  Matrix6Xd result = no_motion(count, container.face_count());
+  const std::optional<RigidBodies>& bodies = built.operators.bodies;
+  Matrix6Xd result = no_motion(count, container.face_count() + (bodies ? bodies->count() : 0));
   for (Eigen::Index i = 0; i < count; ++i) {
     const int k = columns[i];
     const double inertia = dynamics.inertias.size() > 0
@@ -75,25 +139,62 @@ Matrix6Xd yielding_of(const BuiltNetwork& built, const Problem& problem, const G
   for (int f = 0; f < container.face_count(); ++f)
     if (const double mass = piston_of(dynamics.pistons, f).mass; std::isfinite(mass))
       result(guided_axis(container, f), count + f) = step / mass;
+  if (!bodies) return result;
+  for (const auto& member : bodies->members) result.col(member.sphere).setZero();
+  result.rightCols(bodies->count()) = yielding_of_bodies(dynamics.bodies, step);
   return result;
 }
+
+namespace {
+
+/// On the bodies, beside what acts on the spheres of the network: their own loads, and those on spheres that the
+/// fluid leaves out.
+Loads held_by_bodies(const StepTask& task, const RigidBodies& bodies) {
+  const GrainDynamics& dynamics = *task.dynamics;
+  const ActiveGrains& grains = task.built.grains;
+  Loads held(6, bodies.count());
+  const auto add = [&](int b, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
+    held.col(b).head<3>() += force;
+    held.col(b).tail<3>() += bodies.axes[b].transpose() * torque;
+  };
+  held.setZero();
+  for (int b = 0; b < bodies.count(); ++b) add(b, dynamics.bodies[b].other_force, dynamics.bodies[b].other_torque);
+  std::vector<Eigen::Index> seen(bodies.count(), 0);
+  std::size_t next = 0;
+  for (int k = 0; k < grains.held.size(); ++k) {
+    const bool active = next < grains.columns.size() && grains.columns[next] == k;
+    next += active;
+    const int b = grains.held[k];
+    if (b < 0) continue;
+    const Eigen::Vector3d arm = dynamics.bodies[b].arms.col(seen[b]++), force = dynamics.other_forces.col(k);
+    if (active) continue;
+    add(b, force, arm.cross(force));
+    if (dynamics.other_torques.cols() > 0) add(b, Eigen::Vector3d::Zero(), dynamics.other_torques.col(k));
+  }
+  return held;
+}
+
+}  // namespace
 
 Loads held_loads(const StepTask& task, const Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
   const std::vector<int>& columns = built.grains.columns;
   const auto count = static_cast<Eigen::Index>(columns.size());
   const Container& container = problem.container;
-  Loads held = no_motion(count, container.face_count());
+  const std::optional<RigidBodies>& bodies = built.operators.bodies;
+  const Eigen::Index wide = bodies ? bodies->count() : 0;
+  Loads held = no_motion(count, container.face_count() + wide);
   for (Eigen::Index i = 0; i < count; ++i) {
     held.col(i).head<3>() = dynamics->other_forces.col(columns[i]);
     if (dynamics->other_torques.cols() > 0)
       held.col(i).tail<3>() = dynamics->other_torques.col(columns[i]);
     if (problem.lifts()) held.col(i).head<3>() += lift_of(problem, packing, columns[i]);
   }
-  if (!problem.container.pressure_gradient.isZero(0.0)) held += gradient_loads(built, problem);
+  if (!problem.container.pressure_gradient.isZero(0.0)) held.leftCols(held.cols() - wide) += gradient_loads(built, problem);
   for (int f = 0; f < container.face_count(); ++f)
     held.col(count + f).head<3>() = piston_of(dynamics->pistons, f).other_force * container.faces[f].guide +
                                     solution.reference * solution.geometry.loads.col(f).head<3>();
+  if (bodies) held.rightCols(wide) = held_by_bodies(task, *bodies);
   return held;
 }
 

@@ -40,6 +40,11 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Probl
     fresh->strain_volume = strain_volumes(fresh->network, fresh->throats, spheres);
   }
   fresh->unknowns = number_unknowns(fresh->network, fresh->boundaries, container);
+  if (!fresh->grains.body.empty())
+    fresh->closed = take_out_closed_pores(fresh->network, fresh->throats, fresh->conductances.value,
+                                          fresh->grains.body, fresh->unknowns);
+  for (const int pore : fresh->unknowns.enclosed_pores)
+    fresh->throats.pore_volume[pore] = fresh->throats.pore_fluid_volume[pore] = 0.0;
   return fresh;
 }
 

@@ -113,6 +113,8 @@ void NetworkKeeper::take_up(std::unique_ptr<BuiltNetwork> fresh, const Problem& 
   strain_.begin(problem.options.strain_measure, pores, strain);
   work.counts.degenerate_throats = built_->conductances.degenerate;
   work.counts.merged_pores = built_->network.cells() - pores;
+  work.counts.enclosed_pores = built_->closed.enclosed;
+  work.counts.joined_pores = built_->closed.joined;
   if (had_network_) ++rebuilds_;
   had_network_ = true;
   taken_up(std::move(replaced));
@@ -124,6 +126,7 @@ bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) 
   if (packing.size() != packed() || !std::equal(ids_.begin(), ids_.end(), packing.ids.data()))
     return true;
   const ActiveGrains& grains = built_->grains;
+  if (!holds_the_same(grains, packing)) return true;
   const double strain = problem.options.retriangulation_strain;
   std::size_t next = 0;
   for (Eigen::Index k = 0; k < packing.size(); ++k) {

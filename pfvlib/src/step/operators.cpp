@@ -49,13 +49,15 @@ void find_open_water(BuiltNetwork& built, const Problem& problem) {
   built.operators.open_water.emplace();
   if (!problem.options.open_water || problem.options.volume_rates == VolumeRates::geometric) return;
   std::vector<ResistanceBlock> of_shear;
-  if (built.operators.shear_pairs) add_blocks(*built.operators.shear_pairs, problem.fluid.viscosity, of_shear);
+  if (built.operators.shear_pairs) add_blocks(*built.operators.shear_pairs, problem.fluid.viscosity, of_shear,
+                       built.grains.body);
   const std::vector<int>& unknown = built.unknowns.of_pore;
   std::vector<char> imposed(unknown.size());
   std::transform(unknown.begin(), unknown.end(), imposed.begin(), [](int of) { return of == Unknowns::imposed; });
   built.operators.open_water =
       open_water_drags(built.network, built.grains.spheres, built.vertices, built.throats, built.conductances,
-                       *built.operators.force_matrix, imposed, problem.container, problem.fluid.viscosity, of_shear);
+                       *built.operators.force_matrix, imposed, problem.container, problem.fluid.viscosity, of_shear,
+                       built.grains.body);
 }
 
 }  // namespace
@@ -66,8 +68,10 @@ void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& co
     built.operators.pressure_force_matrix =
         force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
                      built.grains.spheres.size(), {true, false, false}, *problem.team);
-  if (problem.options.shear_viscous && !built.operators.shear_pairs)
+  if (problem.options.shear_viscous && !built.operators.shear_pairs) {
     built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.grains.spheres, built.vertices);
+    if (!built.grains.body.empty()) drop_pairs_within(*built.operators.shear_pairs, built.grains.body);
+  }
   if (!built.operators.open_water) {
     find_open_water(built, problem);
     counts.open_water = static_cast<std::int64_t>(built.operators.open_water->size());
@@ -148,6 +152,7 @@ void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen
     volume_rates(*built.operators.geometric_rates, motion, team, rates);
   else
     reciprocal_rates(*built.operators.force_matrix, *built.operators.sum_order, built.bases, motion, team, rates);
+  for (const int pore : built.unknowns.enclosed_pores) rates[pore] = 0.0;
 }
 
 Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion) {

@@ -68,6 +68,7 @@ void impose(const BuiltNetwork& built, Solution& solution) {
   for (const int pore : pores) sum += relative[pore] - first;
   solution.reference = pores.empty() ? 0.0 : first + sum / static_cast<double>(pores.size());
   for (const int pore : pores) relative[pore] -= solution.reference;
+  for (const int pore : built.unknowns.enclosed_pores) relative[pore] = 0.0;
 }
 
 namespace {

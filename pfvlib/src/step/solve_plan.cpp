@@ -44,7 +44,7 @@ int SolvePlan::most_steps(FlowModel& flow, const SolvedInstant& now) {
   constexpr std::int64_t networks_for_a_limit = 4;
   if (flow.fluid().bulk_modulus) return 1;
   if (limit_ < 0.0 || flow.retriangulations() - limit_network_ >= networks_for_a_limit) {
-    limit_ = flow.time_step_limit(now.masses, now.pistons);
+    limit_ = flow.time_step_limit(now.masses, now.pistons, now.bodies ? *now.bodies : std::vector<RigidBody>{});
     limit_network_ = flow.retriangulations();
   }
   const double strain = std::abs(flow.strain() - strain_);

@@ -59,7 +59,7 @@ void StagedStep::find(const StepTask& task, Solution& solution) {
   find_rates_of_packing(task, solution);
   check_dynamics(*dynamics, packing, problem.container);
   const double limit =
-      limit_.of(built, problem, packing.size(), dynamics->masses, dynamics->pistons, work);
+      limit_.of(built, problem, packing.size(), dynamics->masses, dynamics->pistons, dynamics->bodies, work);
   // z: the step times the largest eigenvalue of the drag
   const std::vector<ChebyshevStage> recursion = chebyshev_stages(2.0 * solution.dt / limit);
   solution.stages = static_cast<int>(recursion.size());
@@ -69,7 +69,7 @@ void StagedStep::find(const StepTask& task, Solution& solution) {
   solution.relative_pressures.setZero(built.network.pores());
   impose(built, solution);  // the reference pressure acts on pistons
   const ForcedMotion forced{solution.motion, held_loads(task, solution),
-                            yielding_of(built, problem, *dynamics, solution.dt)};
+                            yielding_of(built, problem, *dynamics, solution.dt), bodies_of(built)};
   solution.moving = true;
   run_recursion(task, forced, recursion, solution);
 }

@@ -9,7 +9,8 @@
 namespace pfv {
 
 TimeStepCheck check_time_step(FlowModel& flow, const Packing& packing, const Eigen::VectorXd& masses,
-                              const std::vector<Piston>& pistons, double step) {
+                              const std::vector<Piston>& pistons, double step,
+                              const std::vector<RigidBody>& bodies) {
   double estimate = std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k < masses.size(); ++k)
     estimate = std::min(
@@ -17,7 +18,7 @@ TimeStepCheck check_time_step(FlowModel& flow, const Packing& packing, const Eig
   const auto free = std::count_if(pistons.begin(), pistons.end(), [](const Piston& piston) {
     return std::isfinite(piston.mass);
   });
-  return {flow.time_step_limit(masses, pistons),
+  return {flow.time_step_limit(masses, pistons, bodies),
           estimate,
           step,
           static_cast<int>(free),

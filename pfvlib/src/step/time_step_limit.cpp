@@ -17,10 +17,11 @@ double limit_of(double eigenvalue) {
   return eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
 }
 
-/// 1 / sqrt(m) of each degree of freedom; faces are guided along axes.
-Matrix6Xd inverse_roots(const BuiltNetwork& built, const Container& container, const Eigen::VectorXd& masses) {
+/// 1 / sqrt(m) of each degree of freedom; faces are guided along axes. Wide where there are bodies.
+Matrix6Xd inverse_roots(const BuiltNetwork& built, const Container& container, const Eigen::VectorXd& masses,
+                        const std::vector<RigidBody>& bodies) {
   const int spheres = built.grains.spheres.size(), faces = container.face_count();
-  Matrix6Xd root = no_motion(spheres, faces);
+  Matrix6Xd root = no_motion(spheres, faces + static_cast<Eigen::Index>(bodies.size()));
   for (int i = 0; i < spheres; ++i) {
     const double mass = masses[built.grains.columns[i]];
     root.col(i).head<3>().setConstant(1.0 / std::sqrt(mass));
@@ -28,6 +29,11 @@ Matrix6Xd inverse_roots(const BuiltNetwork& built, const Container& container, c
         1.0 / std::sqrt(inertia_of(mass, built.grains.spheres.radii[i])));
   }
   const Eigen::Index packed = masses.size() - faces;
+  if (built.operators.bodies) {
+    const Matrix6Xd yielding = yielding_of_bodies(bodies, 1.0);
+    root.rightCols(yielding.cols()) = yielding.cwiseSqrt();
+    for (const auto& member : built.operators.bodies->members) root.col(member.sphere).setZero();
+  }
   for (int f = 0; f < faces; ++f)
     if (std::isfinite(masses[packed + f]))
       root(guided_axis(container, f), spheres + f) = 1.0 / std::sqrt(masses[packed + f]);
@@ -37,15 +43,18 @@ Matrix6Xd inverse_roots(const BuiltNetwork& built, const Container& container, c
 /// Largest eigenvalue of M^-1 S G^-1 S^T, 1/s (with geometric rates E in place of S^T). The operator is
 /// similar to it and, but for those, symmetric.
 double largest_drag(const BuiltNetwork& built, const Problem& problem,
-                    const Eigen::VectorXd& masses, std::int64_t& solves) {
+                    const Eigen::VectorXd& masses, const std::vector<RigidBody>& bodies, std::int64_t& solves) {
   if (built.unknowns.count == 0 || built.grains.spheres.size() == 0) return 0.0;
-  const Matrix6Xd root = inverse_roots(built, problem.container, masses);
+  const std::optional<RigidBodies>& held = built.operators.bodies;
+  const Matrix6Xd root = inverse_roots(built, problem.container, masses, bodies);
   Eigen::VectorXd opened;
   const auto drag = [&](const Eigen::VectorXd& u) {
-    const Motion v = (u.reshaped(6, root.cols()).array() * root.array()).matrix();
+    Motion v = (u.reshaped(6, root.cols()).array() * root.array()).matrix();
+    if (held) v = held->spread(v);
     rates_of(built, v, *problem.team, opened);
-    const Loads load = loads_of(built, homogeneous_pressures(built, opened, solves)) -
-                       resisting_forces(built, problem.fluid.viscosity, v);
+    Loads load = loads_of(built, homogeneous_pressures(built, opened, solves)) -
+                 resisting_forces(built, problem.fluid.viscosity, v);
+    if (held) load = held->gathered(load);
     return Eigen::VectorXd((load.array() * root.array()).matrix().reshaped());
   };
   return largest_eigenvalue(drag, static_cast<int>(root.size()));
@@ -55,22 +64,26 @@ double largest_drag(const BuiltNetwork& built, const Problem& problem,
 
 double TimeStepLimit::of(BuiltNetwork& built, const Problem& problem, Eigen::Index spheres,
                          const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
-                         WorkRecord& work) {
+                         const std::vector<RigidBody>& bodies, WorkRecord& work) {
   if (masses.size() != spheres)
     throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
                      std::to_string(spheres) + " spheres; give one a sphere");
   const int faces = problem.container.face_count();
-  Eigen::VectorXd all(spheres + faces);
+  check_bodies(bodies, built.grains.held);
+  const auto body_count = static_cast<Eigen::Index>(bodies.size());
+  Eigen::VectorXd all(spheres + faces + 6 * body_count);
   all.head(spheres) = masses;
+  all.tail(6 * body_count) = yielding_of_bodies(bodies, 1.0).reshaped();
   for (int f = 0; f < faces; ++f) all[spheres + f] = piston_of(pistons, f).mass;
-  if (!(all.array() > 0.0).all())
+  if (!(all.head(spheres + faces).array() > 0.0).all())
     throw InputError("time step limit: a mass is not a positive number; give kg");
   if (limit_ && all.size() == masses_.size() && all == masses_) return *limit_;
   limit_.reset();
   make_force_matrices(built, problem, work.counts);
   make_volume_rates(built, problem, work.counts);
+  take_bodies(built, problem, bodies);
   masses_ = all;
-  limit_ = limit_of(largest_drag(built, problem, all, work.counts.limit_solve));
+  limit_ = limit_of(largest_drag(built, problem, all.head(spheres + faces), bodies, work.counts.limit_solve));
   return *limit_;
 }
 

@@ -17,12 +17,13 @@ class TimeStepLimit {
   /// s; infinite where nothing resists. `masses` of the packing's spheres, kg. Cost: some 20 to 40 solves,
   /// none when it is kept. Throws InputError.
   double of(BuiltNetwork& built, const Problem& problem, Eigen::Index spheres,
-            const Eigen::VectorXd& masses, const std::vector<Piston>& pistons, WorkRecord& work);
+            const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
+            const std::vector<RigidBody>& bodies, WorkRecord& work);
   void forget() { limit_.reset(); }
 
  private:
   std::optional<double> limit_;
-  Eigen::VectorXd masses_;  ///< that it belongs to: of the spheres and the faces
+  Eigen::VectorXd masses_;  ///< that it belongs to: of the spheres and the faces, then those and the inertias of bodies
 };
 
 }  // namespace pfv

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "physics/throats.hpp"
+#include "pfv/network.hpp"
+#include "solve/pressure_system.hpp"
+
+#include <vector>
+
+namespace pfv {
+
+/// The pores that the overlaps of rigid bodies close. Spheres of one body overlap by design, so that what lies
+/// within it is no fluid; what they close off beside a neighbour is fluid that a rough contact would let out.
+struct ClosedPores {
+  int enclosed = 0;  ///< within one body: without an unknown, at the reference pressure, of no volume that changes
+  int joined = 0;    ///< cut off otherwise, at a body: they share the unknown of the pore behind their widest facet
+};
+
+/// Renumbers the unknowns. `body`: of each sphere, -1 for none.
+ClosedPores take_out_closed_pores(const PoreNetwork& network, const Throats& throats,
+                                  const std::vector<double>& conductances, const std::vector<int>& body,
+                                  Unknowns& unknowns);
+
+}  // namespace pfv
