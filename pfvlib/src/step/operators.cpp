@@ -49,8 +49,7 @@ void find_open_water(BuiltNetwork& built, const Problem& problem) {
   built.operators.open_water.emplace();
   if (!problem.options.open_water || problem.options.volume_rates == VolumeRates::geometric) return;
   std::vector<ResistanceBlock> of_shear;
-  if (built.operators.shear_pairs) add_blocks(*built.operators.shear_pairs, problem.fluid.viscosity, of_shear,
-                       built.grains.body);
+  if (built.operators.shear_pairs) add_blocks(*built.operators.shear_pairs, problem.fluid.viscosity, of_shear);
   const std::vector<int>& unknown = built.unknowns.of_pore;
   std::vector<char> imposed(unknown.size());
   std::transform(unknown.begin(), unknown.end(), imposed.begin(), [](int of) { return of == Unknowns::imposed; });
