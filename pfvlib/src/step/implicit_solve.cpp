@@ -96,7 +96,7 @@ void ImplicitSolve::factor(const StepTask& task, Matrix6Xd yielding) {
 /// Motion and rates of the unknowns as they are, and the loads that the motion has to answer, those of shear among
 /// them; wide.
 Loads ImplicitSolve::follow(const StepTask& task, const ForcedMotion& forced, double growth,
-                              Solution& solution) const {
+                            Solution& solution) const {
   const auto& [built, problem, packing, dynamics, work] = task;
   const ImplicitSystem& system = factor_->system;
   const int spheres = built.grains.spheres.size();
@@ -116,7 +116,7 @@ Loads ImplicitSolve::follow(const StepTask& task, const ForcedMotion& forced, do
 
 /// As refine_pressures: the defects of continuity and of the balance of forces drive a correction of both.
 void ImplicitSolve::refine(const StepTask& task, const ForcedMotion& forced, double growth, Loads loads,
-                             Solution& solution) {
+                           Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
   constexpr double lost = 1e-9, exact = 1e-10, hopeless = 1e-6;
   constexpr int sweeps = 4;
