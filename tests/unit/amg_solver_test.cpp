@@ -18,6 +18,7 @@
 #include <vector>
 
 namespace pfv {
+namespace amg_solver_test {
 namespace {
 
 using namespace support;
@@ -331,6 +332,7 @@ TEST(Amg, WhatItCannotDoIsRefusedInOneLine) {
   for (const Coupling coupling : {Coupling::implicit, Coupling::automatic})
     expect_line(refused(nothing, coupling), "the solver amg solves no implicit steps");
 }
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace amg_solver_test

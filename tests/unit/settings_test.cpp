@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+namespace settings_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -230,3 +231,4 @@ TEST(CheckOptions, OfAStepRefusesWhatItDoesNotHave) {
 }
 
 }  // namespace
+}  // namespace settings_test
