@@ -68,7 +68,9 @@ void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetw
 
 void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
                 const Problem& problem, double swept) {
+  const bool restored = !memory.restored.empty();
   carry_pressures(memory, before, now, problem.fluid);
+  if (restored && memory.account.open) return;  // the state is that of these grains: there is nothing to settle
   settle_account(memory, before, now, problem, swept);
 }
 
