@@ -25,7 +25,7 @@ class BuildWithCMake(build_ext):
         target = pathlib.Path(self.get_ext_fullpath(extension.name)).parent.parent.resolve()
         build = ROOT / "build-pip"
         os.environ.setdefault("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count()))
-        subprocess.run(["cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release",
+        subprocess.run(["cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON",
                         "-DPFV_BUILD_PYTHON=ON", *[f"-DPFV_BUILD_{part}=OFF" for part in OFF],
                         f"-DPython_EXECUTABLE={sys.executable}", "-DPFV_PYTHON_INSTALL_DIR=."], check=True)
         subprocess.run(["cmake", "--build", build, "--target", "pfv_python"], check=True)

@@ -44,7 +44,9 @@ void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces, const P
   MPI_Gatherv(local_.data(), sent_width_ * local_count_, MPI_DOUBLE, received_.data(),
               times(counts_, sent_width_).data(), times(offsets_, sent_width_).data(), MPI_DOUBLE, 0,
               world);
-  if (comm->me == 0) sort_by_tag();
+  if (comm->me != 0) return;
+  sort_by_tag();
+  unpack();
 }
 
 void PfvGrainExchange::pack_mine(const PfvGroups& groups, const PfvStreaming& streaming) {
@@ -88,7 +90,11 @@ void PfvGrainExchange::sort_by_tag() {
   }
   if (!std::is_sorted(order_.begin(), order_.end(), by_tag))
     std::sort(order_.begin(), order_.end(), by_tag);
+}
 
+/// The arrays for the library, from what the ranks have sent.
+void PfvGrainExchange::unpack() {
+  const auto count = static_cast<int>(order_.size());
   grains_.ids.resize(count);
   grains_.positions.resize(3, count);
   grains_.velocities.resize(3, count);

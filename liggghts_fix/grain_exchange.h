@@ -74,6 +74,7 @@ class PfvGrainExchange : protected Pointers {
  private:
   void pack_mine(const PfvGroups& groups, const PfvStreaming& streaming);
   void sort_by_tag();
+  void unpack();
 
   int groupbit_ = 0;
   bool with_forces_ = false, periodic_ = false;

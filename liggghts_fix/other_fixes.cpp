@@ -49,9 +49,9 @@ bool leaves_forces_alone(const Fix& fix) {
   return std::find(styles.begin(), styles.end(), style_of(fix)) != styles.end();
 }
 
-std::string name_of(const Fix& fix) { return "fix " + style_of(fix) + " '" + fix.id + "'"; }
-
 }  // namespace
+
+std::string name_of(const Fix& fix) { return "fix " + style_of(fix) + " '" + fix.id + "'"; }
 
 PfvGroups PfvOtherFixes::groups() const {
   PfvGroups groups;

@@ -21,6 +21,9 @@ struct PfvGroups {
   bool free_to_turn(int mask) const { return (mask & turned) && !(mask & held); }
 };
 
+/// "fix STYLE 'ID'", for messages.
+std::string name_of(const class Fix& fix);
+
 class PfvOtherFixes : protected Pointers {
  public:
   PfvOtherFixes(class LAMMPS* lmp, const class Fix& flow) : Pointers(lmp), flow_(flow) {}

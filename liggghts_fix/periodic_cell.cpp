@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "periodic_cell.h"
 
+#include "other_fixes.h"
+
 #include "atom.h"
 #include "domain.h"
 #include "fix_deform.h"
@@ -14,8 +16,6 @@ namespace LAMMPS_NS {
 namespace {
 
 constexpr int remaps_places = 1;  // FixDeform::remapflag; LIGGGHTS' own number, private to its source
-
-std::string name_of(const Fix& fix) { return std::string("fix ") + fix.style + " '" + fix.id + "'"; }
 
 }  // namespace
 

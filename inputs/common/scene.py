@@ -2,14 +2,12 @@
 """What the run.py of the scenes share: KEY=VALUE words, running LIGGGHTS and pfv with progress,
 the table of results beside their references."""
 import json
-import os
 import resource
 import subprocess
 import sys
 import time
-from pathlib import Path
 
-BIN = Path(os.environ.get("PFV_BIN", Path(__file__).resolve().parents[2] / "build" / "bin"))
+from programs import BIN, liggghts_words, solve_words
 
 # settings that many scenes have: (type, default, what it is)
 SEED = (int, 1, "sample number, 1, 2, ...")
@@ -93,9 +91,7 @@ def liggghts(folder, script, variables, log, progress=None):
     program = BIN / "liggghts-pfv"
     if not program.exists():
         raise Failure(f"{program.name} is not built; run ./run.sh, which builds it")
-    command = ["stdbuf", "-oL", str(program), "-in", script, "-log", log + ".log"]
-    for key, value in variables.items():
-        command += ["-var", key, f"{value:.17g}" if isinstance(value, float) else str(value)]
+    command = ["stdbuf", "-oL", *liggghts_words(script, variables, log + ".log")]
     before = child_seconds()
     said, tail = {}, []
     process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE,
@@ -118,11 +114,8 @@ def liggghts(folder, script, variables, log, progress=None):
 
 def pfv_solve(folder, packing, room, viscosity, report, *words):
     """Report of `pfv solve` on a packing; room: the six numbers of a box, or the name of a container's file."""
-    held = (["--container", room] if isinstance(room, str)
-            else ["--box", *[f"{number:.17g}" for number in room]])
-    command = [str(BIN / "pfv"), "solve", "--packing", str(packing), *held, "--viscosity", f"{viscosity:.17g}",
-               "--report", report, *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    done = subprocess.run(solve_words(packing, room, viscosity, "--report", report, *words), cwd=folder,
+                          capture_output=True, text=True)
     if done.returncode != 0:
         raise Failure(f"pfv solve on {packing}: {done.stderr.strip()}")
     return json.loads((folder / report).read_text())

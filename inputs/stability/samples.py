@@ -2,14 +2,16 @@
 """The grains of the study, and LIGGGHTS runs with them. SAMPLES are made once a command."""
 import functools
 import math
-import os
 import random
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent
-BIN = Path(os.environ.get("PFV_BIN", SCENE.parents[1] / "build" / "bin"))
+sys.path.append(str(SCENE.parent / "common"))
+from programs import BIN, error_of, liggghts_words, one_thread
+
 EDGE, DENSITY = 0.1, 2600.0  # m, kg/m3
 SAMPLES = {"dense": 1.35, "loose": 1.0}  # factor on the radii of a jittered grid
 
@@ -34,19 +36,16 @@ def write_data(path, grains, speed, rng):
 
 def liggghts(script, **variables):
     """(whether the run reached its end, screen output)"""
-    words = [str(BIN / "liggghts-pfv"), "-in", script, "-log", "none"]
-    for name, value in variables.items():
-        words += ["-var", name, str(value)]
-    done = subprocess.run(words, cwd=SCENE, capture_output=True, encoding="utf-8", errors="replace",
-                          env={**os.environ, "OMP_NUM_THREADS": "1"})
+    words = liggghts_words(script, {name: str(value) for name, value in variables.items()}, "none")
+    done = subprocess.run(words, cwd=SCENE, capture_output=True, encoding="utf-8",
+                          errors="replace", env=one_thread())
     return done.returncode == 0, done.stdout
 
 
 def must(ok_and_screen):
     ok, screen = ok_and_screen
     if not ok:
-        raise SystemExit("stability: " + next(
-            (line for line in screen.splitlines() if "ERROR" in line), "liggghts-pfv failed"))
+        raise SystemExit("stability: " + (error_of(screen) or "liggghts-pfv failed"))
     return screen
 
 

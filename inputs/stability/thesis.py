@@ -9,11 +9,12 @@ import numpy as np
 
 from bisection import calms_down, largest_stable
 from packings import (DRAINED, EDGE, POST, STIFFNESS, packed, read_csv, time_step, write_csv)
-from samples import BIN, SCENE, growth, printed
+from samples import SCENE, growth, printed
 from tables import FIGURES, Table
 
 sys.path.insert(0, str(SCENE.parent / "common"))
 from plotting import plt, save_figure  # noqa: E402
+from programs import solve_words  # noqa: E402
 
 GRAINS = 500
 RATIOS = [1.02, 3, 10]
@@ -51,9 +52,8 @@ def papers_matrix(name, chosen, law="hydraulic_radius", edge=EDGE):
         (POST / "moving.csv").write_text("id,x,y,z,radius,vx,vy,vz\n" + "".join(
             ",".join([str(n), *map(repr, grain), *(motion if n == chosen else "000")]) + "\n"
             for n, grain in enumerate(grains, 1)))
-        call = [str(BIN / "pfv"), "solve", "--packing", str(POST / "moving.csv"), "--box",
-                *["0", repr(edge)] * 3, *DRAINED, "--viscosity", "1", "--conductance", law,
-                "--volume-rates", "geometric", "--forces", str(POST / "moving_forces.csv")]
+        call = solve_words(POST / "moving.csv", (0.0, edge) * 3, 1, *DRAINED, "--conductance", law,
+                           "--volume-rates", "geometric", "--forces", str(POST / "moving_forces.csv"))
         done = subprocess.run(call, capture_output=True, text=True)
         if done.returncode != 0:
             raise SystemExit("stability: " + done.stderr.strip())

@@ -2,8 +2,8 @@
 #include "bench_command.hpp"
 
 #include "work/phase_clock.hpp"
-#include "face_arguments.hpp"
 #include "io/atomic_file.hpp"
+#include "numbers.hpp"
 #include "pfv/pfv.hpp"
 
 #include <algorithm>
@@ -23,14 +23,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int largest_size = 1'000'000;
-
-int whole_number(const std::string& option, const std::string& text, int least, int most) {
-  const double value = number(option, text);
-  if (value != std::floor(value) || value < least || value > most)
-    throw InputError(option + ": " + text + " is no whole number from " + std::to_string(least) +
-                     " to " + std::to_string(most));
-  return static_cast<int>(value);
-}
 
 /// Phases in the order of a call, in CPU seconds, then what the whole of them needs.
 const std::vector<std::string> measured_names{"triangulate", "throats", "assemble",
@@ -56,11 +48,6 @@ Box drained_box() {
   box[Face::zlo].boundary = Boundary::pressure(0.0);
   box[Face::zhi].boundary = Boundary::pressure(1.0);
   return box;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 Times operator-(Times after, const Times& before) {

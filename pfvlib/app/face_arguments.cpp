@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "face_arguments.hpp"
 
+#include "numbers.hpp"
 #include "pfv/error.hpp"
 #include "pfv/words.hpp"
 #include "text/number_text.hpp"
@@ -13,8 +14,6 @@
 
 namespace pfv::app {
 namespace {
-
-using detail::quoted;
 
 /// "sealed, pressure=P, flux=Q"; those that are open alone: of a region.
 std::string boundary_items(bool with_sealed = true) {
@@ -90,7 +89,7 @@ class FaceItems {
       face_.angular_velocity = number(where, value_of(where, item)) * face_.surface.axis;
       face_.pivot = face_.surface.point;
     } else {
-      fail(where, "unknown item " + quoted(item.key) + ": use " + face_items());
+      fail(where, "unknown item " + detail::quoted(item.key) + ": use " + face_items());
     }
   }
 
@@ -110,17 +109,17 @@ int face_of(const std::string& where, const std::string& name, const Container& 
   if (const std::optional<int> face = container.face_named(name)) return *face;
   std::string names;
   for (const ContainerFace& face : container.faces) names += (names.empty() ? "" : ", ") + face.name;
-  fail(where, "unknown face " + quoted(name) + ": use " + names);
+  fail(where, "unknown face " + detail::quoted(name) + ": use " + names);
 }
 
 Boundary required_boundary(const std::string& where, const std::string& item, const std::string& items) {
   const auto boundary = boundary_of(where, item_of(item));
-  if (!boundary) fail(where, "unknown item " + quoted(item) + ": use " + items);
+  if (!boundary) fail(where, "unknown item " + detail::quoted(item) + ": use " + items);
   return *boundary;
 }
 
 ContainerPatch patch_of(const std::string& argument, const Container& container) {
-  const std::string where = "--patch " + quoted(argument);
+  const std::string where = "--patch " + detail::quoted(argument);
   const std::vector<std::string> fields = parts(argument, ':');
   if (fields.size() != 3) fail(where, "write NAME:A0,A1,B0,B1:ITEM");
   const std::vector<std::string> rectangle = parts(fields[1], ',');
@@ -145,7 +144,7 @@ std::vector<double> numbers_of(const std::string& where, const std::vector<std::
 }
 
 Region region_of(const std::string& argument) {
-  const std::string where = "--region " + quoted(argument);
+  const std::string where = "--region " + detail::quoted(argument);
   const std::vector<std::string> fields = parts(argument, ':');
   const auto n = numbers_of(where, fields, 6, "X0,X1,Y0,Y1,Z0,Z1:ITEM");
   return {{n[0], n[2], n[4]},
@@ -154,7 +153,7 @@ Region region_of(const std::string& argument) {
 }
 
 Region point_of(const std::string& argument) {
-  const std::string where = "--point " + quoted(argument);
+  const std::string where = "--point " + detail::quoted(argument);
   const std::vector<std::string> fields = parts(argument, ':');
   const auto n = numbers_of(where, fields, 3, "X,Y,Z:ITEM");
   const Eigen::Vector3d place(n[0], n[1], n[2]);
@@ -162,12 +161,6 @@ Region point_of(const std::string& argument) {
 }
 
 }  // namespace
-
-double number(const std::string& option, const std::string& text) {
-  const auto value = detail::finite_number(detail::trimmed(text));
-  if (!value) fail(option, quoted(text) + " is no finite number: give one such as -1 or 2.5e-3");
-  return *value;
-}
 
 Wall wall_named(const std::string& option, const std::string& name) {
   return Words({name}, option).choice<Wall>();
@@ -180,7 +173,7 @@ void apply_faces(const std::vector<std::string>& arguments, Wall wall, Container
     faces.emplace_back(face);
   }
   for (const std::string& argument : arguments) {
-    const std::string where = "--face " + quoted(argument);
+    const std::string where = "--face " + detail::quoted(argument);
     const std::size_t colon = argument.find(':');
     if (colon == std::string::npos)
       fail(where, std::string("no items: write NAME:ITEM[,ITEM]... with items ") + face_items());

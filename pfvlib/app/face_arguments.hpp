@@ -8,9 +8,6 @@
 
 namespace pfv::app {
 
-/// The whole of `text` as a finite number; throws InputError that names `option`.
-double number(const std::string& option, const std::string& text);
-
 /// no_slip or symmetry; throws InputError that names `option`.
 Wall wall_named(const std::string& option, const std::string& name);
 

@@ -3,6 +3,7 @@
 
 #include "face_arguments.hpp"
 #include "io/atomic_file.hpp"
+#include "numbers.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 #include "pfv/packing_file.hpp"
@@ -33,19 +34,6 @@ std::string option_of(const Setting& setting) {
   std::string option = setting.name;
   std::replace(option.begin(), option.end(), '_', '-');
   return "--" + option;
-}
-
-double positive(const std::string& option, const std::string& text) {
-  const double value = number(option, text);
-  if (value <= 0) throw InputError(option + ": " + text + " is not > 0: give a positive number");
-  return value;
-}
-
-int whole_number(const std::string& option, const std::string& text) {
-  const auto number = detail::integer(text);
-  if (!number || *number < 1 || *number > std::numeric_limits<int>::max())
-    throw InputError(option + ": " + detail::quoted(text) + " is no whole number >= 1");
-  return static_cast<int>(*number);
 }
 
 namespace {

@@ -44,10 +44,7 @@ struct SolveRequest {
   std::optional<std::string> forces, report, vtk, culprits;  ///< output files
 };
 
-/// The whole of `text` as a number > 0, or as a whole number >= 1; throw InputError that names `option`.
 std::string option_of(const Setting& setting);  ///< "--volume-rates"
-double positive(const std::string& option, const std::string& text);
-int whole_number(const std::string& option, const std::string& text);
 
 /// The spheres of the packing file; remarks on how it was read go to `remarks`.
 PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks);

@@ -4,6 +4,7 @@
 #include "network/grains.hpp"
 #include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
+#include "numbers.hpp"
 #include "pfv/darcy_grid.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
@@ -17,12 +18,6 @@
 
 namespace pfv::app {
 namespace {
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 struct StepTimes {
   std::optional<double> cpu, wall;

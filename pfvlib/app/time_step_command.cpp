@@ -2,6 +2,7 @@
 #include "time_step_command.hpp"
 
 #include "face_arguments.hpp"
+#include "numbers.hpp"
 #include "geometry/pi.hpp"
 #include "io/atomic_file.hpp"
 #include "pfv/error.hpp"

@@ -48,7 +48,7 @@ py::dict dict_of(const FaceResult& face) {
                   "force_viscous"_a = array_of(face.force_viscous));
 }
 
-py::dict faces_of(FlowHost& host) {
+py::dict face_results_of(FlowHost& host) {
   return by_face(host.box(), host.ask([](FlowModel& model) { return model.faces(); }),
                  [](const FaceResult& face) { return dict_of(face); });
 }
@@ -129,7 +129,7 @@ That of the tetrahedron around the place. Raises InputError outside the box.)");
            "Mean over the pores that a plane cuts, Pa. axis: 0 to 2 or x, y, z; position: m.");
   flow.def("mean_pressure", [](FlowHost& host) { return host.ask([](FlowModel& m) { return m.mean_pressure(); }); },
            "Mean over the fluid's volume, Pa.");
-  flow.def("faces", &faces_of,
+  flow.def("faces", &face_results_of,
            R"({face: {"flux", "force_pressure", "force_viscous"}}: m3/s, positive into the box; 3 numbers, N.
 
 Cost, once a step: one solve and two passes over the throats.)");

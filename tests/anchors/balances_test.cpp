@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <ostream>
 
+namespace balances_test {
 namespace {
 
 using namespace support;
@@ -99,3 +100,4 @@ TEST(CommonPressure, ChangesNoFlowAndNoForceOnASphere) {
 }
 
 }  // namespace
+}  // namespace balances_test

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+namespace beds_test {
 namespace {
 
 using namespace support;
@@ -196,3 +197,4 @@ TEST(Beds, TheEstimatedErrorCoversTheActualOne) {
 }
 
 }  // namespace
+}  // namespace beds_test

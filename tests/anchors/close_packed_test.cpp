@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace close_packed_test {
 namespace {
 
 using namespace support;
@@ -112,3 +113,4 @@ TEST(ClosePacked, JitteredBy1em9HaveTheSamePermeability) {
 }
 
 }  // namespace
+}  // namespace close_packed_test

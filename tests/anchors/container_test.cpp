@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+namespace container_test {
 namespace {
 
 using namespace support;
@@ -58,8 +59,6 @@ std::vector<double> errors_of(const Eigen::Matrix3Xd& forces, const pfv::Packing
   return errors;
 }
 
-}  // namespace
-
 TEST(StokesInContainers, PermeabilityAndForces) {
   for (const Case& one : cases()) {
     pfv::Container container = one.container;
@@ -80,3 +79,6 @@ TEST(StokesInContainers, PermeabilityAndForces) {
     EXPECT_GT(*flow.report().permeability_error, std::abs(ratio - 1.0)) << one.name;
   }
 }
+
+}  // namespace
+}  // namespace container_test

@@ -16,6 +16,7 @@
 #include <tuple>
 #include <vector>
 
+namespace flux_response_test {
 namespace {
 
 using namespace support;
@@ -163,3 +164,4 @@ TEST(OwnDrag, OfASphereThatTurnsIsAPartOfThatOfStokes) {
 }
 
 }  // namespace
+}  // namespace flux_response_test

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
+namespace lattices_test {
 namespace {
 
 using namespace support;
@@ -224,3 +225,4 @@ TEST(TurnedLattices, MergeAndBalanceLikeStraightOnes) {
 }
 
 }  // namespace
+}  // namespace lattices_test

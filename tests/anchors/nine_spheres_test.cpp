@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+namespace nine_spheres_test {
 namespace {
 
 using namespace support;
@@ -202,3 +203,4 @@ TEST(NineSpheres, NoSlipWallsTakeTheirStokesShareWithin9Percent) {
 }
 
 }  // namespace
+}  // namespace nine_spheres_test

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+namespace open_throat_test {
 namespace {
 
 using namespace support;
@@ -184,3 +185,4 @@ TEST(OpenThroat, DenseBedsAgreeWithTheHydraulicRadiusWithin5PerCent) {
 }
 
 }  // namespace
+}  // namespace open_throat_test

@@ -7,6 +7,7 @@
 #include <array>
 #include <gtest/gtest.h>
 
+namespace point_source_test {
 namespace {
 
 using namespace support;
@@ -62,3 +63,4 @@ TEST(PointSource, SpreadsLikeDarcyFlow) {
 }
 
 }  // namespace
+}  // namespace point_source_test

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
+namespace random_beds_test {
 namespace {
 
 using namespace support;
@@ -103,3 +104,4 @@ TEST(RandomBeds, Of200SpheresTheLawsStandApartAsInSmallerOnes) {
 }
 
 }  // namespace
+}  // namespace random_beds_test

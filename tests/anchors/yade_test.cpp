@@ -15,6 +15,7 @@
 #include <map>
 #include <ostream>
 
+namespace yade_test {
 namespace {
 
 using namespace support;
@@ -222,3 +223,4 @@ TEST(YadeDifferences, EachRuleIsWorthItsShareOfThePermeability) {
 }
 
 }  // namespace
+}  // namespace yade_test

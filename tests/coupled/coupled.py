@@ -11,11 +11,14 @@ import pathlib
 import random
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
-BIN = pathlib.Path(os.environ["PFV_BIN"])
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.append(str(HERE.parents[1] / "inputs/common"))
+from programs import BIN, liggghts_words, one_thread, solve_words
+
 EDGE = 0.1  # of the cubic flow box, m
 HANG = 300  # s; only a guard against a hanging run, far above what any test needs
 
@@ -130,12 +133,9 @@ class CoupledTest(unittest.TestCase):
         """Runs LIGGGHTS on the script in the test's folder."""
         (self.folder / "in.test").write_text(script)
         shutil.copy(HERE / "in.packing", self.folder)
-        words = [str(command or BIN / "liggghts-pfv"), "-in", "in.test"]
-        if ranks > 1:
-            words = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(ranks)] + words
-        return subprocess.run(words, cwd=self.folder, capture_output=True, timeout=HANG,
-                              encoding="utf-8", errors="replace",
-                              env={**os.environ, "OMP_NUM_THREADS": "1", **(environment or {})})
+        words = liggghts_words("in.test", ranks=ranks, program=command or BIN / "liggghts-pfv")
+        return subprocess.run(words, cwd=self.folder, capture_output=True, timeout=HANG, encoding="utf-8",
+                              errors="replace", env={**one_thread(), **(environment or {})})
 
     def liggghts(self, script, **options):
         """A run that must succeed; returns its screen output."""
@@ -157,12 +157,10 @@ class CoupledTest(unittest.TestCase):
 
     def pfv_solve(self, packing_file, *options, box=(0.0, EDGE) * 3, container=None):
         """(report, {id: total force}) of `pfv solve` on a packing in the test's folder, in a box or a container."""
-        room = ["--box", *[repr(v) for v in box]]
         if container:
             (self.folder / "container.json").write_text(json.dumps(container))
-            room = ["--container", "container.json"]
-        words = [str(BIN / "pfv"), "solve", "--packing", packing_file, *room, "--viscosity", "0.01", "--forces", "forces.csv",
-                 "--report", "report.json", *options]
+        words = solve_words(packing_file, "container.json" if container else box, 0.01, "--forces", "forces.csv",
+                            "--report", "report.json", *options)
         done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, timeout=HANG)
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = (self.folder / "forces.csv").read_text().splitlines()[1:]

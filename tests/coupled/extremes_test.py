@@ -8,7 +8,7 @@ import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from coupled import BIN, FLOW, HANG, HERE, CoupledTest, packing, random_velocities, write_data
+from coupled import BIN, FLOW, HANG, HERE, CoupledTest, liggghts_words, packing, random_velocities, write_data
 
 HEAD = "include in.packing\n"
 
@@ -51,8 +51,8 @@ class Files(CoupledTest):
         script = HEAD + f"fix flow all pfv {FLOW} output 2 flow.pvd profile z 4 1 p.csv\nrun 1000000\n"
         (self.folder / "in.test").write_text(script)
         shutil.copy(HERE / "in.packing", self.folder)
-        run = subprocess.Popen([str(BIN / "liggghts-pfv"), "-in", "in.test"], cwd=self.folder,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        run = subprocess.Popen(liggghts_words("in.test"), cwd=self.folder, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
         try:
             collection, waited = self.folder / "flow.pvd", 0.0
             while waited < HANG and self.entries(collection) < 20:

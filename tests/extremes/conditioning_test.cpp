@@ -13,6 +13,7 @@
 #include <Eigen/Cholesky>
 #include <queue>
 
+namespace conditioning_test {
 namespace {
 
 using namespace support;
@@ -175,3 +176,4 @@ TEST(Conditioning, OfSpheresThatNearlyCoincide) {
 }
 
 }  // namespace
+}  // namespace conditioning_test

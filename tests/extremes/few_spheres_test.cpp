@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+namespace few_spheres_test {
 namespace {
 
 using namespace support;
@@ -113,3 +114,4 @@ TEST(FewSpheres, OnExactLatticesBalance) {
 }
 
 }  // namespace
+}  // namespace few_spheres_test

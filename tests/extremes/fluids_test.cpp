@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+namespace fluids_test {
 namespace {
 
 using namespace support;
@@ -142,3 +143,4 @@ TEST(SealedBox, OfAFluidTooStiffForItsStepIsRefusedOrRight) {
 }
 
 }  // namespace
+}  // namespace fluids_test

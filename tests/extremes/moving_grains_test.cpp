@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+namespace moving_grains_test {
 namespace {
 
 using namespace support;
@@ -175,3 +176,4 @@ TEST(Swelling, UntilTheBedIsClosedAndBack) {
 }
 
 }  // namespace
+}  // namespace moving_grains_test

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+namespace overlaps_test {
 namespace {
 
 using namespace support;
@@ -91,3 +92,4 @@ TEST(Extremes, SameInputSameBytes) {
 }
 
 }  // namespace
+}  // namespace overlaps_test

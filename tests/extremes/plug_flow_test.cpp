@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+namespace plug_flow_test {
 namespace {
 
 using namespace support;
@@ -122,3 +123,4 @@ TEST(PlugFlow, HasASisterInALatticeThatAGradientDrives) {
 }
 
 }  // namespace
+}  // namespace plug_flow_test

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+namespace scales_test {
 namespace {
 
 using namespace support;
@@ -148,3 +149,4 @@ TEST_P(SizeRatios, KeepTheSumRulesAndBalances) {
 INSTANTIATE_TEST_SUITE_P(Ratios, SizeRatios, testing::Values(10.0, 100.0, 1e3, 1e4, 1e5));
 
 }  // namespace
+}  // namespace scales_test

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+namespace small_spheres_test {
 namespace {
 
 using namespace support;
@@ -88,3 +89,4 @@ TEST(HiddenSpheres, InAChainOfThemChangeNothing) {
 }
 
 }  // namespace
+}  // namespace small_spheres_test

@@ -18,6 +18,7 @@
 #include <vector>
 
 namespace pfv {
+namespace amg_solver_test {
 namespace {
 
 using namespace support;
@@ -333,6 +334,7 @@ TEST(Amg, WhatItCannotDoIsRefusedInOneLine) {
   by.solver = SolverKind::amg;
   EXPECT_NO_THROW(check(by, Coupling::automatic));
 }
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace amg_solver_test

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace pfv {
+namespace automatic_coupling_test {
 namespace {
 
 using ::support::expect_line;
@@ -135,6 +136,7 @@ TEST(SolvePlan, ValuesOfBoundariesAreComparedWithTheLargest) {
   now[Face::zhi].boundary.value = 0.11;
   EXPECT_TRUE(imposed_values_differ(now, then, 1e-3));
 }
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace automatic_coupling_test

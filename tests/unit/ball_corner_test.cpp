@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace ball_corner_test {
 namespace {
 
 using pfv::beyond_corner;
@@ -87,3 +88,4 @@ TEST(BallCorner, EveryRadiusByScaling) {
 }
 
 }  // namespace
+}  // namespace ball_corner_test

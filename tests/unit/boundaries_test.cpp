@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+namespace boundaries_test {
 namespace {
 
 using namespace support;
@@ -238,3 +239,4 @@ TEST(Boundaries, APatchTakesThePoresOnAllItsBordersAlike) {
 }
 
 }  // namespace
+}  // namespace boundaries_test

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+namespace canonical_order_test {
 namespace {
 
 using namespace support;
@@ -440,3 +441,4 @@ TEST(HilbertNumber, NeighboursAlongTheCurveAreNeighboursInSpace) {
 }
 
 }  // namespace
+}  // namespace canonical_order_test

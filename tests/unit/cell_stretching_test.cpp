@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 
+namespace cell_stretching_test {
 namespace {
 
 using namespace support;
@@ -288,3 +289,4 @@ TEST(CellStretching, ImplicitAndStagedStepsBalanceToo) {
 }
 
 }  // namespace
+}  // namespace cell_stretching_test

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
+namespace conductances_test {
 namespace {
 
 using namespace support;
@@ -127,3 +128,4 @@ TEST(DegenerateThroats, OfTinySpheresHaveABoundedHydraulicRadius) {
 }
 
 }  // namespace
+}  // namespace conductances_test

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace contact_springs_test {
 namespace {
 
 using namespace support;
@@ -94,3 +95,4 @@ TEST(ContactSprings, RefuseWhatIsNoStiffnessAndNoMass) {
 }
 
 }  // namespace
+}  // namespace contact_springs_test

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 #include <utility>
 
+namespace container_test {
 namespace {
 
 using namespace support;
@@ -53,8 +54,6 @@ pfv::Container driven(pfv::Container container, const std::string& from, const s
   container.faces[*container.face_named(to)].boundary = pfv::Boundary::pressure(0.0);
   return container;
 }
-
-}  // namespace
 
 TEST(Containers, PoresAddUpToTheVolumeAndBasesToTheFaces) {
   for (const Case& one : all_containers()) {
@@ -342,3 +341,6 @@ TEST(Containers, WhatCannotHoldFluidIsRefusedByName) {
     EXPECT_NE(std::string(error.what()).find("tilted"), std::string::npos) << error.what();
   }
 }
+
+}  // namespace
+}  // namespace container_test

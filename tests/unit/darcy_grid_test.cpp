@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace darcy_grid_test {
 namespace {
 
 using pfv::Boundary;
@@ -370,3 +371,4 @@ TEST(DarcyGrid, RefusesWhatItCannotUse) {
 }
 
 }  // namespace
+}  // namespace darcy_grid_test

@@ -11,6 +11,7 @@
 #include <vector>
 
 namespace pfv {
+namespace direct_solvers_test {
 namespace {
 
 using namespace support;
@@ -99,6 +100,7 @@ TEST(DirectSolvers, AgreeWithKlu2InEachOrdering) {
       EXPECT_LT((x - reference).norm(), 1e-10 * reference.norm()) << name_of(kind);
     }
 }
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace direct_solvers_test

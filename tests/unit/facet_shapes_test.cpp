@@ -13,6 +13,7 @@
 #include <limits>
 #include <vector>
 
+namespace facet_shapes_test {
 namespace {
 
 TEST(Arctangent, IsThatOfTheLibraryToThreeUnitsInTheLastPlace) {
@@ -68,3 +69,4 @@ TEST(FacetShapes, AreThoseOfTheirTriangles) {
 }
 
 }  // namespace
+}  // namespace facet_shapes_test

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+namespace flow_averages_test {
 namespace {
 
 using namespace support;
@@ -82,3 +83,4 @@ TEST(FlowAverages, MeanStressIsTheMeanPressureUpToTheViscousPart) {
 }
 
 }  // namespace
+}  // namespace flow_averages_test

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+namespace flow_compressible_test {
 namespace {
 
 using namespace support;
@@ -146,4 +147,22 @@ TEST(CompressibleFluid, RestartsFromItsState) {
   EXPECT_EQ(restarted.time(), flow.time());
 }
 
+TEST(CompressibleFluid, RefusesTheStateOfAnotherNetworkUntilItGetsItsOwn) {
+  const SealedBox sealed;
+  pfv::Flow flow(sealed.box, compressible(), sealed.options);
+  flow.step(sealed.packing.view(), dt);
+  const pfv::FlowState own = flow.state();
+  pfv::FlowState other = own;
+  other.pore_pressures.pop_back();
+  const std::string counts = std::to_string(other.pore_pressures.size()) + " pore pressures, and the network of "
+                             "this packing has " + std::to_string(own.pore_pressures.size()) + " pores";
+  pfv::Flow restarted(sealed.box, compressible(), sealed.options);
+  restarted.set_state(other);
+  for (int again = 0; again < 2; ++again)
+    expect_line(refusal([&] { restarted.step(sealed.packing.view(), dt); }), counts);
+  restarted.set_state(own);
+  EXPECT_TRUE(restarted.step(sealed.packing.view(), dt).total == flow.step(sealed.packing.view(), dt).total);
+}
+
 }  // namespace
+}  // namespace flow_compressible_test

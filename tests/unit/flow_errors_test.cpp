@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+namespace flow_errors_test {
 namespace {
 
 using namespace support;
@@ -184,3 +185,4 @@ TEST(BadPackings, AreRefusedBySphere) {
 }
 
 }  // namespace
+}  // namespace flow_errors_test

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+namespace flow_fields_test {
 namespace {
 
 using namespace support;
@@ -170,3 +171,4 @@ TEST(Queries, RefuseAnAxisThatIsNone) {
 }
 
 }  // namespace
+}  // namespace flow_fields_test

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <gtest/gtest.h>
 
+namespace flow_reuse_test {
 namespace {
 
 using namespace support;
@@ -271,3 +272,4 @@ TEST(FlowReuse, AKeptNetworkGivesTheBytesOfAFreshOne) {
 }
 
 }  // namespace
+}  // namespace flow_reuse_test

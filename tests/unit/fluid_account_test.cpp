@@ -8,6 +8,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+namespace fluid_account_test {
 namespace {
 
 using namespace support;
@@ -125,3 +126,4 @@ TEST(FluidAccount, RatesFollowTheBoxOnAnOldNetwork) {
 }
 
 }  // namespace
+}  // namespace fluid_account_test

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+namespace force_matrix_test {
 namespace {
 
 using namespace support;
@@ -229,3 +230,4 @@ TEST(SpherePressure, IsThePressureWhereItIsUniform) {
 }
 
 }  // namespace
+}  // namespace force_matrix_test

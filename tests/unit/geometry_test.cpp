@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+namespace geometry_test {
 namespace {
 
 using pfv::Polygon;
@@ -171,3 +172,4 @@ TEST(SolidAngle, OfATetrahedronSurroundingThePlaceIsFourPi) {
 }
 
 }  // namespace
+}  // namespace geometry_test

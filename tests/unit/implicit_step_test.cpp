@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+namespace implicit_step_test {
 namespace {
 
 using namespace support;
@@ -400,3 +401,4 @@ TEST(ImplicitStep, RefusesMissingForcesAndImpossibleMasses) {
 }
 
 }  // namespace
+}  // namespace implicit_step_test

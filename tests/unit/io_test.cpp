@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+namespace io_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -285,3 +286,4 @@ TEST_F(InputOutput, ACollectionNamesTimePartAndEscapedFile) {
 }
 
 }  // namespace
+}  // namespace io_test

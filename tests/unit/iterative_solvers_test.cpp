@@ -11,6 +11,7 @@ namespace pfv {
 
 static void PrintTo(SolverKind kind, std::ostream* stream) { *stream << name_of(kind); }
 
+namespace iterative_solvers_test {
 namespace {
 
 using namespace support;
@@ -81,6 +82,7 @@ TEST_P(IterativeSolver, GivesZeroForZero) {
   const auto solver = make_solver(GetParam(), OrderingKind::automatic);
   EXPECT_TRUE(solution(*solver, lattice(4), Eigen::VectorXd::Zero(64)).isZero(0.0));
 }
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace iterative_solvers_test

@@ -13,6 +13,7 @@
 #include <ostream>
 
 namespace pfv {
+namespace linear_solver_test {
 namespace {
 
 using namespace support;
@@ -251,6 +252,7 @@ TEST_P(EverySolver, FailsSilentlyAndInOneLine) {
   EXPECT_TRUE(contains(message, solver_->name())) << message;
   EXPECT_FALSE(contains(message, "\n")) << message;
 }
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace linear_solver_test

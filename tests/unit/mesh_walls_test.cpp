@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+namespace mesh_walls_test {
 namespace {
 
 using pfv::MeshWall;
@@ -141,3 +142,4 @@ TEST(MeshWalls, FollowAMotion) {
 }
 
 }  // namespace
+}  // namespace mesh_walls_test

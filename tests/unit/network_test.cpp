@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
+namespace network_test {
 namespace {
 
 using namespace support;
@@ -194,3 +195,4 @@ TEST(HiddenSpheres, AreNoVertices) {
 }
 
 }  // namespace
+}  // namespace network_test

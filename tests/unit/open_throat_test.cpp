@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace open_throat_test {
 namespace {
 
 using namespace support;
@@ -179,3 +180,4 @@ TEST(OpenThroat, ScalesWithViscosityAndSize) {
 }
 
 }  // namespace
+}  // namespace open_throat_test

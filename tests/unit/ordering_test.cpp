@@ -13,6 +13,7 @@
 #include <vector>
 
 namespace pfv {
+namespace ordering_test {
 namespace {
 
 using namespace support;
@@ -133,6 +134,7 @@ TEST(AutomaticOrdering, IsGeometricWherePlacesAreGivenAndMetisElsewhere) {
             geometric_ordering(matrix, lattice_places(12)));
   EXPECT_EQ(fill_reducing_ordering(OrderingKind::automatic, matrix, {}), metis_ordering(matrix));
 }
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace ordering_test

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <vector>
 
+namespace packing_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -317,3 +318,4 @@ TEST_F(PackingFiles, WhatIsNotReadIsRefusedWithItsCause) {
 }
 
 }  // namespace
+}  // namespace packing_file_test

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace permeability_error_test {
 namespace {
 
 using namespace support;
@@ -112,3 +113,4 @@ TEST(PermeabilityError, CountsTheDissipationOfDegenerateThroats) {
 }
 
 }  // namespace
+}  // namespace permeability_error_test

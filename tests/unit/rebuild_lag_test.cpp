@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+namespace rebuild_lag_test {
 namespace {
 
 using namespace pfv;
@@ -314,3 +315,4 @@ TEST(PhaseClock, LeavesOutWhatRunsInTheBackground) {
 }
 
 }  // namespace
+}  // namespace rebuild_lag_test

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace reciprocity_test {
 namespace {
 
 using namespace support;
@@ -273,3 +274,4 @@ TEST(GeometricRates, ActAtTheCentresAndRefuseLongSteps) {
 }
 
 }  // namespace
+}  // namespace reciprocity_test

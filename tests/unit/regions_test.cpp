@@ -7,6 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace regions_test {
 namespace {
 
 using namespace support;
@@ -152,3 +153,4 @@ TEST(Regions, MovedOnesLeadToANewNetwork) {
 }
 
 }  // namespace
+}  // namespace regions_test

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+namespace settings_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -229,3 +230,4 @@ TEST(CheckOptions, OfAStepRefusesWhatItDoesNotHave) {
 }
 
 }  // namespace
+}  // namespace settings_test

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+namespace shared_solve_test {
 namespace {
 
 using namespace pfv;
@@ -134,3 +135,4 @@ TEST(CheckOptions, RefusesThreadsAndPrecisionsThatMakeNoSense) {
 }
 
 }  // namespace
+}  // namespace shared_solve_test

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+namespace shear_forces_test {
 namespace {
 
 using namespace support;
@@ -92,3 +93,4 @@ TEST(ShearForces, NeedForces) {
 }
 
 }  // namespace
+}  // namespace shear_forces_test

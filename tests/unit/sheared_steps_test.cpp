@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+namespace sheared_steps_test {
 namespace {
 
 using namespace support;
@@ -413,3 +414,4 @@ TEST(ShearForces, OfACellAreThoseOfEightOfThemTogetherAlsoWhereItStretches) {
 }
 
 }  // namespace
+}  // namespace sheared_steps_test

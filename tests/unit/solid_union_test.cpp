@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+namespace solid_union_test {
 namespace {
 
 using namespace support;
@@ -184,3 +185,4 @@ TEST(SolidUnion, AreaIsTheDerivativeOfTheVolumeByTheRadii) {
 }
 
 }  // namespace
+}  // namespace solid_union_test

@@ -7,6 +7,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+namespace solve_interval_test {
 namespace {
 
 constexpr double tolerance = 1e-3;
@@ -186,3 +187,4 @@ TEST(SolveInterval, WithoutAnyLoadNothingIsDividedByZero) {
 }
 
 }  // namespace
+}  // namespace solve_interval_test

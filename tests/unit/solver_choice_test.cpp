@@ -11,6 +11,7 @@
 #include <string>
 
 namespace pfv {
+namespace solver_choice_test {
 namespace {
 
 using namespace support;
@@ -105,6 +106,7 @@ TEST(Mumps, IsRefusedByABuildWithoutIt) {
   EXPECT_TRUE(contains(message, "PFV_WITH_MUMPS")) << message;
 }
 #endif
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace solver_choice_test

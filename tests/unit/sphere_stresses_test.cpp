@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+namespace sphere_stresses_test {
 namespace {
 
 using namespace support;
@@ -77,3 +78,4 @@ TEST(SphereStresses, OfAPeriodicCellDoNotDependOnWhereItIsCut) {
 }
 
 }  // namespace
+}  // namespace sphere_stresses_test

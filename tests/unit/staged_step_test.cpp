@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace pfv {
+namespace staged_step_test {
 namespace {
 
 Box drained() {
@@ -238,6 +239,7 @@ TEST(StagedStep, RefusesMissingForces) {
   GrainDynamics dynamics{{run.masses.data(), run.masses.size()}, {nullptr, 3, 0}};
   EXPECT_THROW(support::step_staged(run.flow, run.packing.view(), 1.0, dynamics), InputError);
 }
+}  // namespace pfv
 
 }  // namespace
-}  // namespace pfv
+}  // namespace staged_step_test

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+namespace strain_measure_test {
 namespace {
 
 using namespace support;
@@ -105,3 +106,4 @@ TEST(StrainMeasure, APoreThatAllFluidHasToPassCountsByThePowerLostThere) {
 }
 
 }  // namespace
+}  // namespace strain_measure_test

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+namespace supernodal_factor_test {
 namespace {
 
 using namespace pfv;
@@ -214,3 +215,4 @@ TEST(SupernodalFactor, SaysWhereNoPivotIsLeft) {
 }
 
 }  // namespace
+}  // namespace supernodal_factor_test

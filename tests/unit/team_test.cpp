@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+namespace team_test {
 namespace {
 
 TEST(Team, DoesEachPartOnce) {
@@ -62,3 +63,4 @@ TEST(Team, PassesOnWhatAPartHasThrownAndGoesOn) {
 }
 
 }  // namespace
+}  // namespace team_test

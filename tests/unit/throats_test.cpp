@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
+namespace throats_test {
 namespace {
 
 using namespace support;
@@ -236,3 +237,4 @@ TEST(SingleThroats, FluidAreaAgreesWithQuadratureOfOverlappingDiscs) {
 }
 
 }  // namespace
+}  // namespace throats_test

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+namespace tilted_cell_test {
 namespace {
 
 using namespace support;
@@ -102,3 +103,4 @@ TEST(TiltedCell, WhatItCannotBeIsRefused) {
 }
 
 }  // namespace
+}  // namespace tilted_cell_test

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace time_step_limit_test {
 namespace {
 
 using namespace support;
@@ -112,3 +113,4 @@ TEST(TimeStepLimit, LeavesTheResultsOfTheLastCallAlone) {
 }
 
 }  // namespace
+}  // namespace time_step_limit_test

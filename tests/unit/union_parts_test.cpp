@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace union_parts_test {
 namespace {
 
 using namespace support;
@@ -110,3 +111,4 @@ TEST(DisplacedVolumes, AreWhatTheLiftCounts) {
 }
 
 }  // namespace
+}  // namespace union_parts_test

@@ -12,6 +12,7 @@
 #include <limits>
 #include <numeric>
 
+namespace viscosity_matrices_test {
 namespace {
 
 using namespace support;
@@ -159,3 +160,4 @@ TEST(EstimatedTimeStep, IsThePapersFormula) {
 }
 
 }  // namespace
+}  // namespace viscosity_matrices_test

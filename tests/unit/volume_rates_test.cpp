@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+namespace volume_rates_test {
 namespace {
 
 using namespace support;
@@ -183,3 +184,4 @@ TEST(Pistons, LoseWhatTheyDisplaceThroughEveryKindOfBoundary) {
 }
 
 }  // namespace
+}  // namespace volume_rates_test

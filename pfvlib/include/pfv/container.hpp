@@ -90,8 +90,8 @@ inline constexpr int most_faces = 64;
 Container container_of(std::vector<ContainerFace> faces);
 /// Fills in `lower` and `upper`; a box keeps its own. Cost: faces².
 void find_bounds(Container& container);
-/// Takes them from a container whose faces have the same places and shapes, without that cost; false, and nothing
-/// done, where they have not, or for a box.
+/// Copies them from a container whose faces have the same positions and shapes, at no such cost. Returns false and
+/// changes nothing where these differ, or for a box.
 bool take_bounds(Container& container, const Container& known);
 
 /// Volume (m³), area of each face (m²). Throws InputError for a container that is not closed.

@@ -42,7 +42,7 @@ class DarcyGrid final : public FlowModel {
   const DarcyOptions& grid() const;
 
   double time() const override;
-  double strain() const override { return 0.0; }  ///< the porosity is looked at by steps
+  double strain() const override { return 0.0; }  ///< the porosity is renewed by a count of steps
   FlowState state() const override;               ///< without pressures: the flow is steady
   void set_state(FlowState state) override;
 
@@ -58,7 +58,7 @@ class DarcyGrid final : public FlowModel {
   /// their spheres are read, like others.
   double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons = {},
                          const std::vector<RigidBody>& bodies = {}) override;
-  /// Looks at the porosity after the first.
+  /// How often the porosity was renewed after the first call.
   std::int64_t retriangulations() const override;
   std::vector<int> hidden() const override { return {}; }  ///< every grain displaces fluid
   std::int64_t hidden_or_outside() const override;

@@ -23,14 +23,14 @@ struct Names<DragLaw> {
 
 struct DarcyOptions {
   std::array<int, 3> cells{1, 1, 1};  ///< along x, y, z; > 0. Two grain diameters a cell or more
-  int refresh_every = 1;              ///< steps between two looks at the porosity, > 0
+  int refresh_every = 1;              ///< steps between two renewals of the porosity, > 0
   DragLaw drag = DragLaw::di_felice;
   /// The grains carry fluid with them and displace it. false: a steady flow through grains at rest,
   /// in which they move, as in the example.
   bool grain_motion = true;
 };
 
-/// Throws InputError for numbers of cells or steps < 1, and for what a grid has no place for: a
+/// Throws InputError for numbers of cells or steps < 1, and for what a grid cannot use: a
 /// bulk modulus, options that shape a pore network.
 void check(const DarcyOptions& grid, const Fluid& fluid, const Options& options);
 

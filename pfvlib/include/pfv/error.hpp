@@ -10,7 +10,7 @@
 
 namespace pfv {
 
-/// What an error is about, all of it: for a picture (write_culprits).
+/// All spheres and places that an error is about, to be drawn (write_culprits).
 struct Culprits {
   std::vector<std::int64_t> spheres;          ///< ids
   std::vector<std::array<double, 3>> places;  ///< m

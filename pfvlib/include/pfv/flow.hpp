@@ -19,7 +19,7 @@ struct SliceMeans {
 
 /// Room without spheres, as the pores show it.
 struct EmptySpace {
-  /// From this many spheres of mean volume on a pore is large. Dense packings have none, loose ones (solid fraction
+  /// A pore is large from this many mean sphere volumes on. Dense packings have none, loose ones (solid fraction
   /// 0.4) 2 % of their pore volume in them, suspensions of 0.2 17 %; a box around a cylinder 26 % and more.
   static constexpr double spheres_a_pore = 2.0;
 
@@ -30,7 +30,7 @@ struct EmptySpace {
 /// A sentence where there is much of it (more than 5 %), else nothing.
 std::optional<std::string> warning_of(const EmptySpace& empty);
 
-/// Flow through the pores of a moving packing: the one owner of state, who alone knows what is stale.
+/// Flow through the pores of a moving packing: the only owner of state, which alone knows what is out of date.
 ///
 ///     pfv::Flow flow(box, fluid, options);
 ///     loop {
@@ -86,8 +86,8 @@ class Flow final : public FlowModel {
   double plane_pressure(int axis, double position) const override;
   /// Mean over all pores, weighted with their volume.
   double mean_pressure() const override;
-  /// dt < 2 / lambda_max(M^-1 S G^-1 E). Cost: some 20 to 40 solves for a new network, none when it
-  /// was asked before.
+  /// dt < 2 / lambda_max(M^-1 S G^-1 E). Cost: some 20 to 40 solves for a new network, none where the
+  /// limit of this network is known.
   double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons = {},
                          const std::vector<RigidBody>& bodies = {}) override;
   /// V^k of these spheres (columns of the packing): the fluid answers the velocity v of sphere k alone,

@@ -26,7 +26,7 @@ struct Forces {
                                     ///< Options::sphere_pressure; 0 for hidden and left-out spheres
 };
 
-/// What a model must remember to go on after a restart with the same packing, besides its settings.
+/// What a model needs to go on after a restart with the same packing, besides its settings.
 struct FlowState {
   double time = 0.0;                       ///< s
   double strain = 0.0;                     ///< accumulated since the last triangulation
@@ -80,7 +80,7 @@ struct Step {
   bool commit = true;
   // of automatic coupling
   double safety = 1.0;   ///< part of the explicit limit that explicit steps may reach
-  std::string obstacle;  ///< what the host has against other than explicit steps: thrown where they are needed
+  std::string obstacle;  ///< why the host allows explicit steps alone, if so: thrown where others are needed
 
   static Step with(Coupling coupling, const GrainDynamics& dynamics) {
     return {coupling, &dynamics, true, 1.0, {}};
@@ -92,8 +92,8 @@ struct Step {
 };
 
 /// A fluid between moving grains, as a host program sees it: grains in, forces out. `Flow` (pore-scale
-/// finite volumes) and `DarcyGrid` (a coarse grid) are the two that there are; a host that needs no
-/// more than this holds either.
+/// finite volumes) and `DarcyGrid` (a coarse grid) are the two implementations; a host that needs no
+/// more than this works with either.
 ///
 /// Every method throws InputError (bad packing, a pressure that nothing determines) or SolverError;
 /// after a throw the model holds no result until the next successful call.
@@ -142,7 +142,8 @@ class FlowModel {
   virtual double time() const = 0;    ///< s, that was advanced
   virtual double strain() const = 0;  ///< pore strain since the last rebuild
   virtual FlowState state() const = 0;
-  /// Takes up a stored state; `pore_pressures` must belong to the network that the next packing gives.
+  /// Takes up a stored state. The next step throws InputError where its packing gives another number of pores
+  /// than there are `pore_pressures`; none is a fluid that begins anew.
   virtual void set_state(FlowState state) = 0;
 
   // results of the last call

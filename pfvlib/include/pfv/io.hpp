@@ -18,8 +18,8 @@ PackingArrays read_packing(const std::string& path);
 
 /// Reads a container: JSON {"planes": [{"name", "inward_normal": [x, y, z], "offset"}, ...], "cylinders": [{"name",
 /// "axis": [x, y, z], "point": [x, y, z], "radius"}, ...]}, m; inside: inward_normal . x >= offset, and within each
-/// cylinder. An inward normal of another length than one takes its offset along. Throws InputError naming file and
-/// entry.
+/// cylinder. The inward normal need not be a unit vector; the offset scales with it. Throws InputError naming
+/// file and entry.
 Container read_container(const std::string& path);
 
 // Every writer writes beside the target and renames at the end: a file is whole or absent.

@@ -11,11 +11,11 @@
 
 namespace pfv {
 
-/// The room that a dump or a data file names, m.
+/// The simulation box that a dump or a data file states, m.
 struct PackingBounds {
   Eigen::Vector3d lower, upper;
   std::array<bool, 3> periodic{false, false, false};
-  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  ///< xy, xz, yz of a room that leans (Box::tilt)
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  ///< xy, xz, yz of a tilted box (Box::tilt)
 
   bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
 };
@@ -24,7 +24,7 @@ struct PackingBounds {
 struct PackingFile {
   PackingArrays packing;
   std::optional<PackingBounds> bounds;
-  std::vector<std::string> remarks;  ///< what was taken for granted, a sentence each
+  std::vector<std::string> remarks;  ///< what was assumed in reading, a sentence each
 };
 
 struct PackingChoice {

@@ -26,7 +26,7 @@ struct OpeningResult {
   std::optional<double> pressure;  ///< Pa, mean of its pores; absent without a pore
 };
 
-/// How often each piece of work was done since the Flow was made: a scene pays for nothing else.
+/// How often each piece of work was done since the Flow was made; nothing else was computed.
 struct Counts {
   std::int64_t triangulate = 0, order = 0, factor = 0, solve = 0, force_matrix = 0, volume_rate = 0;
   /// Solves beside `solve`, which counts right-hand sides of steps: for what those left (refinement, balances),

@@ -22,14 +22,14 @@ struct Names<Model> {
   static constexpr std::array<Named<Model>, 2> all{{{Model::pores, "pfv"}, {Model::darcy_grid, "darcy_grid"}}};
 };
 
-/// All that a program says of a flow besides its box.
+/// All that a program specifies about a flow besides its box.
 struct Settings {
   Model model = Model::pores;
   Fluid fluid;
   Options options;
   DarcyOptions darcy;
   StepSettings steps;
-  std::set<std::string> given;  ///< names of the settings that were said, be it with their default
+  std::set<std::string> given;  ///< names of the settings that were given, even at their default
 
   /// For make_flow.
   std::optional<DarcyOptions> grid() const {

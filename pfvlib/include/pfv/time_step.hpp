@@ -19,10 +19,10 @@ double contact_time_step(double mass, const Eigen::Matrix3d& stiffness);
 /// pi rho d²/(1200 mu) = M/(400 mu r), s: eq. 4.20, which is eq. 4.15 with V = 400 mu d.
 double estimated_time_step(double mass, double radius, double viscosity);
 
-/// Where the time step of a run stands.
+/// The time step of a run beside its limits.
 struct TimeStepCheck {
   double limit;     ///< of the explicit coupling, s
-  double estimate;  ///< the papers', of the grain that is worst off, s
+  double estimate;  ///< the papers', of the most critical grain, s
   double step;      ///< between two solves, s
   int pistons;
   Coupling coupling;
@@ -41,7 +41,7 @@ TimeStepCheck check_time_step(FlowModel& flow, const Packing& packing, const Eig
                               const std::vector<Piston>& pistons, double step,
                               const std::vector<RigidBody>& bodies = {});
 
-/// What a host that solves every `held` of its steps should be warned of, a line each. `safety`: part of the limit
+/// Warnings for a host that solves the flow once in `held` of its steps, a line each. `safety`: part of the limit
 /// that a step may reach; `remedy`: what it can take instead of a shorter step, or why there is nothing.
 std::vector<std::string> warnings_of(const TimeStepCheck& check, int held, double safety,
                                      const std::string& remedy);

@@ -5,8 +5,8 @@
 
 namespace pfv {
 
-/// Volume (m³) that each sphere of a rigid body has of their union: what of it lies in its power cell.
-/// The parts add up to the exact volume of the union; one that others cover has 0. `centres` (3 x N, m),
+/// Share (m³) of each sphere of a rigid body in the volume of their union: the part in the sphere's power cell.
+/// The shares add up to the exact volume of the union; a sphere that others cover has 0. `centres` (3 x N, m),
 /// `radii` (N, m). Cost: a triangulation of the N spheres. Throws InputError where numbers are not finite
 /// or a radius is not positive.
 Eigen::VectorXd union_parts(const Eigen::Matrix3Xd& centres, const Eigen::VectorXd& radii);

@@ -69,19 +69,8 @@ void DarcyData::require_result() const {
 
 bool DarcyData::needs_look(const Packing& packing) const {
   if (stale || !built || steps_since_look >= grid_options.refresh_every) return true;
-  if (packing.size() != static_cast<Eigen::Index>(packing_ids.size()) ||
-      !std::equal(packing_ids.begin(), packing_ids.end(), packing.ids.data()))
-    return true;
-  const std::vector<int>& columns = built->grains.columns;
-  std::size_t next = 0;
-  for (Eigen::Index k = 0; k < packing.size(); ++k) {
-    const bool active = next < columns.size() && columns[next] == k;
-    if (is_inside(packing, k, box) != active) return true;
-    next += active;
-    // a number that is not finite leads to a look, whose checks name it
-    if (packing.velocities.cols() > 0 && !packing.velocities.col(k).allFinite()) return true;
-  }
-  return false;
+  if (!same_grains(packing, box, packing_ids, built->grains.columns)) return true;
+  return !packing.velocities.allFinite();  // leads to a look, whose checks name the sphere
 }
 
 /// Porosity, permeability and the factor from the grains as they are now.

@@ -13,7 +13,7 @@
 
 namespace pfv {
 
-/// What follows from one look at the porosity.
+/// What one renewal of the porosity gives.
 struct BuiltGrid {
   ActiveGrains grains;
   Eigen::Vector3d lower;  ///< corner of the box, m
@@ -50,7 +50,7 @@ struct DarcyData {
 
   std::unique_ptr<BuiltGrid> built;
   std::vector<std::int64_t> packing_ids;
-  std::unique_ptr<LinearSolver> solver;  ///< its ordering serves every look at the porosity
+  std::unique_ptr<LinearSolver> solver;  ///< its ordering serves every renewal of the porosity
   bool stale = true;
   int steps_since_look = 0;
   double time = 0.0;

@@ -53,14 +53,6 @@ double Flow::pressure_at(const Eigen::Vector3d& place) const {
   return pfv::pressure_at(parts_->network(), parts_->solution, place);
 }
 
-namespace {
-
-void require_axis(int axis) {
-  if (axis < 0 || axis > 2) throw InputError("axis " + std::to_string(axis) + ": give 0, 1 or 2 for x, y or z");
-}
-
-}  // namespace
-
 double Flow::plane_pressure(int axis, double position) const {
   require_axis(axis);
   return pfv::plane_pressure(parts_->network(), parts_->solution, axis, position);

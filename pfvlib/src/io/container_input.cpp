@@ -10,38 +10,38 @@ namespace pfv {
 
 namespace {
 
-using Json = nlohmann::json;
+using InputJson = nlohmann::json;
 
 [[noreturn]] void fail(const std::string& where, const std::string& what) { throw InputError(where + ": " + what); }
 
 /// The entry of that name, which must be there.
-const Json& entry(const std::string& where, const Json& object, const std::string& name) {
+const InputJson& entry(const std::string& where, const InputJson& object, const std::string& name) {
   const auto found = object.find(name);
   if (found == object.end()) fail(where, "it has no \"" + name + "\"");
   return *found;
 }
 
-double number_of(const std::string& where, const Json& object, const std::string& name) {
-  const Json& value = entry(where, object, name);
+double number_of(const std::string& where, const InputJson& object, const std::string& name) {
+  const InputJson& value = entry(where, object, name);
   if (!value.is_number()) fail(where, "\"" + name + "\" is no number");
   return value.get<double>();
 }
 
-Eigen::Vector3d vector_of(const std::string& where, const Json& object, const std::string& name) {
-  const Json& value = entry(where, object, name);
+Eigen::Vector3d vector_of(const std::string& where, const InputJson& object, const std::string& name) {
+  const InputJson& value = entry(where, object, name);
   const bool three = value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() &&
                      value[2].is_number();
   if (!three) fail(where, "\"" + name + "\" is no list of three numbers");
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 
-Eigen::Vector3d direction_of(const std::string& where, const Json& object, const std::string& name) {
+Eigen::Vector3d direction_of(const std::string& where, const InputJson& object, const std::string& name) {
   const Eigen::Vector3d direction = vector_of(where, object, name);
   if (!(direction.norm() > 0.0)) fail(where, "\"" + name + "\" has no length");
   return direction;
 }
 
-void refuse_unknown(const std::string& where, const Json& object, const std::set<std::string>& known) {
+void refuse_unknown(const std::string& where, const InputJson& object, const std::set<std::string>& known) {
   if (!object.is_object()) fail(where, "it is no object {...}");
   for (const auto& item : object.items())
     if (known.count(item.key()) == 0) {
@@ -51,15 +51,15 @@ void refuse_unknown(const std::string& where, const Json& object, const std::set
     }
 }
 
-ContainerFace named_face(const std::string& where, const Json& object) {
-  const Json& name = entry(where, object, "name");
+ContainerFace named_face(const std::string& where, const InputJson& object) {
+  const InputJson& name = entry(where, object, "name");
   if (!name.is_string() || name.get<std::string>().empty()) fail(where, "its \"name\" is no text");
   ContainerFace face;
   face.name = name.get<std::string>();
   return face;
 }
 
-ContainerFace plane_of(const std::string& where, const Json& object) {
+ContainerFace read_plane(const std::string& where, const InputJson& object) {
   refuse_unknown(where, object, {"name", "inward_normal", "offset"});
   ContainerFace face = named_face(where, object);
   const Eigen::Vector3d inward = direction_of(where, object, "inward_normal");
@@ -70,7 +70,7 @@ ContainerFace plane_of(const std::string& where, const Json& object) {
   return face;
 }
 
-ContainerFace cylinder_of(const std::string& where, const Json& object) {
+ContainerFace read_cylinder(const std::string& where, const InputJson& object) {
   refuse_unknown(where, object, {"name", "axis", "point", "radius"});
   ContainerFace face = named_face(where, object);
   face.surface = Surface::cylinder(direction_of(where, object, "axis"), vector_of(where, object, "point"),
@@ -79,7 +79,7 @@ ContainerFace cylinder_of(const std::string& where, const Json& object) {
 }
 
 template <class Make>
-void add_faces(std::vector<ContainerFace>& faces, const std::string& path, const Json& json, const char* kind,
+void add_faces(std::vector<ContainerFace>& faces, const std::string& path, const InputJson& json, const char* kind,
                Make&& make) {
   const auto list = json.find(kind);
   if (list == json.end()) return;
@@ -93,16 +93,16 @@ void add_faces(std::vector<ContainerFace>& faces, const std::string& path, const
 Container read_container(const std::string& path) {
   std::ifstream file(path);
   if (!file) fail(path, "cannot be read: give the name of a file that holds a container");
-  Json json;
+  InputJson json;
   try {
-    json = Json::parse(file);
-  } catch (const Json::exception& error) {
+    json = InputJson::parse(file);
+  } catch (const InputJson::exception& error) {
     fail(path, std::string("it is no JSON: ") + error.what());
   }
   refuse_unknown(path, json, {"planes", "cylinders"});
   std::vector<ContainerFace> faces;
-  add_faces(faces, path, json, "planes", plane_of);
-  add_faces(faces, path, json, "cylinders", cylinder_of);
+  add_faces(faces, path, json, "planes", read_plane);
+  add_faces(faces, path, json, "cylinders", read_cylinder);
   if (faces.empty()) fail(path, "it has neither planes nor cylinders");
   return container_of(std::move(faces));
 }

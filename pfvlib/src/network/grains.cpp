@@ -137,6 +137,31 @@ InputError outside_of(const Container& container, const Packing& packing, Eigen:
   return InputError(text + " is not inside the container; remove the sphere", culprit);
 }
 
+/// These columns of the packing, from the corner `lower`, in the home period of a periodic cell.
+void gather_spheres(const Packing& packing, const Eigen::Vector3d& lower, const std::vector<int>& columns,
+                    Spheres& spheres) {
+  const auto n = static_cast<Eigen::Index>(columns.size());
+  spheres.ids.resize(n);
+  spheres.centres.resize(3, n);
+  spheres.radii.resize(n);
+  const bool tilted = !spheres.tilt.isZero(0.0);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int k = columns[i];
+    spheres.ids[i] = packing.ids[k];
+    spheres.centres.col(i) = packing.positions.col(k) - lower;
+    if (tilted) {
+      const Lattice lattice = spheres.lattice();
+      spheres.centres.col(i) -=
+          lattice.displacement(lattice.periods(spheres.centres.col(i), [](double x) { return std::floor(x); }));
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      if (spheres.periodic[axis])
+        spheres.centres(axis, i) -=
+            spheres.edges[axis] * std::floor(spheres.centres(axis, i) / spheres.edges[axis]);
+    spheres.radii[i] = packing.radii[k];
+  }
+}
+
 }  // namespace
 
 namespace {
@@ -161,32 +186,13 @@ ActiveGrains select_grains(const Packing& packing, const Container& container, O
       throw outside_of(container, packing, k);
     }
   }
-  const auto n = static_cast<Eigen::Index>(grains.columns.size());
   Spheres& spheres = grains.spheres;
-  spheres.ids.resize(n);
-  spheres.centres.resize(3, n);
-  spheres.radii.resize(n);
   spheres.edges = container.upper - container.lower;
   spheres.walls = walls_of(container, container.lower);
   spheres.volume = volume;
   spheres.periodic = container.periodic;
   spheres.tilt = container.tilt;
-  const bool tilted = !container.tilt.isZero(0.0);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const int k = grains.columns[i];
-    spheres.ids[i] = packing.ids[k];
-    spheres.centres.col(i) = packing.positions.col(k) - container.lower;
-    if (tilted) {
-      const Lattice lattice = spheres.lattice();
-      spheres.centres.col(i) -=
-          lattice.displacement(lattice.periods(spheres.centres.col(i), [](double x) { return std::floor(x); }));
-    }
-    for (int axis = 0; axis < 3; ++axis)  // back into the periodic cell
-      if (container.periodic[axis])
-        spheres.centres(axis, i) -=
-            spheres.edges[axis] * std::floor(spheres.centres(axis, i) / spheres.edges[axis]);
-    spheres.radii[i] = packing.radii[k];
-  }
+  gather_spheres(packing, container.lower, grains.columns, spheres);
   if (packing.displaced_volumes.size() > 0) spheres.displaced = packing.displaced_volumes(grains.columns);
   if (has_bodies(packing)) {
     grains.held = packing.bodies;
@@ -198,6 +204,20 @@ ActiveGrains select_grains(const Packing& packing, const Container& container, O
 bool holds_the_same(const ActiveGrains& grains, const Packing& packing) {
   if (!has_bodies(packing)) return grains.held.size() == 0;
   return grains.held.size() == packing.bodies.size() && grains.held == packing.bodies;
+}
+
+bool same_grains(const Packing& packing, const Container& container, const std::vector<std::int64_t>& ids,
+                 const std::vector<int>& columns) {
+  if (packing.size() != static_cast<Eigen::Index>(ids.size()) ||
+      !std::equal(ids.begin(), ids.end(), packing.ids.data()))
+    return false;
+  std::size_t next = 0;
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    const bool active = next < columns.size() && columns[next] == k;
+    if (is_inside(packing, k, container) != active) return false;
+    next += active;
+  }
+  return true;
 }
 
 void gather_velocities(const Packing& packing, const std::vector<int>& columns,

@@ -6,6 +6,7 @@
 #include "pfv/options.hpp"
 #include "pfv/packing.hpp"
 
+#include <cstdint>
 #include <vector>
 
 namespace pfv {
@@ -28,6 +29,10 @@ ActiveGrains select_grains(const Packing& packing, const Container& container, O
 bool holds_the_same(const ActiveGrains& grains, const Packing& packing);
 /// Cheap tests of each step.
 bool is_inside(const Packing& packing, Eigen::Index column, const Container& container);
+/// Whether the packing still has the spheres of these ids, in their order, and those in these columns alone
+/// are inside the container.
+bool same_grains(const Packing& packing, const Container& container, const std::vector<std::int64_t>& ids,
+                 const std::vector<int>& columns);
 /// Moment of inertia of a solid sphere, kg m².
 inline double inertia_of(double mass, double radius) { return 0.4 * mass * radius * radius; }
 /// 3 x active spheres; zeros where the packing has none.

@@ -90,7 +90,7 @@ bool is_settled(const PoreNetwork& all, const Images& images, const Spheres& sph
 }
 
 /// Where a pore of the full network lies: the home pore that it is or is an image of.
-struct Place {
+struct PoreImage {
   int pore = -1;
   std::array<int, 3> shift{0, 0, 0};
 };
@@ -108,7 +108,7 @@ struct Way {
 /// True when each throat that leaves the cell comes in again as large on the other side. Where spheres
 /// nearly coincide their images may be joined into pores in different ways.
 bool repeats(const PoreNetwork& all, const Spheres& images, const std::vector<int>& home,
-             const std::vector<Place>& places) {
+             const std::vector<PoreImage>& places) {
   std::map<Way, Eigen::Vector3d> areas;
   double largest = 0.0;
   for (int t = 0; t < all.throats(); ++t) {
@@ -200,9 +200,10 @@ void find_hidden(const Images& images, const Spheres& spheres, PoreNetwork& netw
 
 }  // namespace
 
-Images replicate(const Spheres& spheres, double margin) {
-  Images images;
-  images.margin = margin;
+namespace {
+
+/// Number of periods along each axis within which the images lie that are up to `margin` outside the cell.
+std::array<int, 3> periods_within(const Spheres& spheres, double margin) {
   std::array<int, 3> reach{0, 0, 0};
   Eigen::Vector3d leaning = Eigen::Vector3d::Zero();  // of all the images so far, along the axes that come next
   for (int axis = 2; axis >= 0; --axis) {
@@ -211,6 +212,15 @@ Images replicate(const Spheres& spheres, double margin) {
     if (axis == 2) leaning += reach[2] * Eigen::Vector3d(std::abs(spheres.tilt[1]), std::abs(spheres.tilt[2]), 0.0);
     if (axis == 1) leaning[0] += reach[1] * std::abs(spheres.tilt[0]);
   }
+  return reach;
+}
+
+}  // namespace
+
+Images replicate(const Spheres& spheres, double margin) {
+  Images images;
+  images.margin = margin;
+  const std::array<int, 3> reach = periods_within(spheres, margin);
   std::vector<Eigen::Vector3d> centres;
   for (int x = -reach[0]; x <= reach[0]; ++x)
     for (int y = -reach[1]; y <= reach[1]; ++y)
@@ -248,7 +258,7 @@ namespace {
 struct Folding {
   std::vector<int> home;      ///< number of each pore that lies in the period, or -1
   std::vector<char> needed;   ///< it lies there, or is a neighbour of one that does
-  std::vector<Place> places;  ///< of the needed ones
+  std::vector<PoreImage> places;  ///< of the needed ones
 };
 
 /// False where an image of a needed pore is not found.
@@ -267,7 +277,7 @@ bool find_places(const PoreNetwork& all, const Spheres& spheres, double spacing,
       if (folding.needed[pore]) continue;
       folding.needed[pore] = 1;
       const Eigen::Vector3d centre = all.pore_centres.col(pore);
-      Place& place = folding.places[pore];
+      PoreImage& place = folding.places[pore];
       place.shift = shift_of(centre, spheres);
       const int found = finder.find(centre - displacement(place.shift, spheres));
       if (found < 0) return false;
@@ -285,8 +295,8 @@ std::vector<FoldedThroat> fold_throats(const PoreNetwork& all, const Folding& fo
     const auto [i, j] = all.throat_pores[t];
     if (!folding.needed[i] || !folding.needed[j]) continue;
     for (const bool turned : {false, true}) {
-      const Place& first = folding.places[turned ? j : i];
-      const Place& second = folding.places[turned ? i : j];
+      const PoreImage& first = folding.places[turned ? j : i];
+      const PoreImage& second = folding.places[turned ? i : j];
       if (first.shift != here || first.pore > second.pore ||
           (first.pore == second.pore && second.shift <= here))
         continue;

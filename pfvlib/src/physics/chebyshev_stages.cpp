@@ -29,7 +29,7 @@ Chebyshev chebyshev(int degree, double x) {
 }
 
 /// Half of the damping goes into width: without it contacts with dashpots become unstable.
-constexpr double epsilon = 2.0;
+constexpr double damping = 2.0;
 
 /// More stages than these cost more than the steps they save; a step of this size is a mistake.
 constexpr int most_stages = 2000;
@@ -40,7 +40,7 @@ std::vector<ChebyshevStage> chebyshev_stages(double z) {
   constexpr double explicit_bound = 1.9, margin = 1.05;
   if (z < explicit_bound) return {{1.0, 0.0, 1.0}};
   for (int s = 2; s <= most_stages; ++s) {
-    const double w0 = 1.0 + epsilon / (static_cast<double>(s) * s);
+    const double w0 = 1.0 + damping / (static_cast<double>(s) * s);
     const Chebyshev t = chebyshev(s, w0);
     const double w1 = t.value[s] / t.derivative;
     if ((1.0 + w0) / w1 < margin * z) continue;

@@ -25,6 +25,7 @@ struct Batch {
 #define PFV_FOR_EACH_PROCESSOR
 #endif
 
+// One function, long as it is: the loop becomes vector instructions as a whole.
 PFV_FOR_EACH_PROCESSOR void measure(Batch& b) {
   for (int i = 0; i < facet_batch; ++i) {
     double e[3][3], n[3];  // from corner k to the next one

@@ -11,7 +11,7 @@ namespace pfv {
 namespace {
 
 /// A piece of a pore's surface.
-struct Side {
+struct SurfacePiece {
   int pore;
   Eigen::Vector3d middle;
   double area;
@@ -20,7 +20,7 @@ struct Side {
 
 /// The pieces of the throats; the flow of a throat is spread over its facets by area.
 void add_facets(const PoreNetwork& network, const Spheres& spheres,
-                const std::vector<double>& fluxes, std::vector<Side>& sides) {
+                const std::vector<double>& fluxes, std::vector<SurfacePiece>& sides) {
   for (int t = 0; t < network.throats(); ++t) {
     double total = 0.0;
     for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
@@ -46,7 +46,7 @@ Eigen::Vector3d outward_at(const std::array<Vertex, 4>& cell, int wall, const Sp
 /// over its cells by area.
 void add_bases(const PoreNetwork& network, const Spheres& spheres,
                const PoreBoundaries& boundaries, const std::vector<double>& inflows,
-               std::vector<Side>& sides) {
+               std::vector<SurfacePiece>& sides) {
   const auto& contacts = boundaries.contacts;
   std::vector<double> total(contacts.size(), 0.0);
   const std::size_t first = sides.size();
@@ -66,7 +66,7 @@ void add_bases(const PoreNetwork& network, const Spheres& spheres,
       total[contact] += area;
     }
   for (std::size_t k = 0; k < contact_of.size(); ++k) {
-    Side& side = sides[first + k];
+    SurfacePiece& side = sides[first + k];
     if (total[contact_of[k]] > 0.0)
       side.outflow = -inflows[contact_of[k]] * side.area / total[contact_of[k]];
   }
@@ -109,19 +109,19 @@ Eigen::Matrix3Xd velocity_integrals(const PoreNetwork& network, const Spheres& s
                                     const PoreBoundaries& boundaries,
                                     const std::vector<double>& fluxes,
                                     const std::vector<double>& inflows) {
-  std::vector<Side> sides;
+  std::vector<SurfacePiece> sides;
   add_facets(network, spheres, fluxes, sides);
   add_bases(network, spheres, boundaries, inflows, sides);
   Eigen::Matrix3Xd middle = Eigen::Matrix3Xd::Zero(3, network.pores());
   Eigen::VectorXd area = Eigen::VectorXd::Zero(network.pores());
-  for (const Side& side : sides) {
+  for (const SurfacePiece& side : sides) {
     middle.col(side.pore) += side.area * side.middle;
     area[side.pore] += side.area;
   }
   for (int p = 0; p < network.pores(); ++p)
     if (area[p] > 0.0) middle.col(p) /= area[p];
   Eigen::Matrix3Xd integrals = Eigen::Matrix3Xd::Zero(3, network.pores());
-  for (const Side& side : sides)
+  for (const SurfacePiece& side : sides)
     integrals.col(side.pore) += side.outflow * (side.middle - middle.col(side.pore));
   return integrals;
 }

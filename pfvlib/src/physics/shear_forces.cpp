@@ -31,14 +31,14 @@ struct Side {
 };
 
 /// A facet between two cells, whose centres are those of its pores where it reaches into an image.
-struct Facet {
+struct CutFacet {
   Eigen::Vector3d from, to;
   double volume, surface;
 };
 
-Facet facet_of(const PoreNetwork& network, const Throats& throats, int f, int throat) {
+CutFacet facet_of(const PoreNetwork& network, const Throats& throats, int f, int throat) {
   const bool in_throat = throat < network.throats();
-  Facet facet{{}, {}, in_throat ? throats.volume[throat] : 0.0, in_throat ? throats.gamma[throat] : 0.0};
+  CutFacet facet{{}, {}, in_throat ? throats.volume[throat] : 0.0, in_throat ? throats.gamma[throat] : 0.0};
   const auto [from, to] = network.facet_cells[f];
   if (network.throat_offsets.cols() > 0) {
     const auto [first, second] = network.throat_pores[throat];
@@ -65,7 +65,7 @@ std::array<int, 3> periods_of(const PoreNetwork& network, const Spheres& spheres
 
 /// The triangle that the line between the facet's two cell centres spans with the pair's axis, positive
 /// where it turns about the axis by the right-hand rule, as all of them do around a convex facet.
-Side side_of(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices, const Facet& facet,
+Side side_of(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices, const CutFacet& facet,
              Vertex a, Vertex b) {
   const bool as_listed = network.vertex_sphere[a] < network.vertex_sphere[b];
   const Vertex low = as_listed ? a : b, high = as_listed ? b : a;
@@ -88,7 +88,7 @@ std::vector<Side> sides_of(const PoreNetwork& network, const Throats& throats, c
   int t = 0;
   for (int f = 0; f < network.facets(); ++f) {
     while (t < network.throats() && f >= network.throat_facets[t + 1]) ++t;
-    const Facet facet = facet_of(network, throats, f, t);
+    const CutFacet facet = facet_of(network, throats, f, t);
     for (int k = 0; k < 3; ++k) {
       const Vertex a = network.facet_vertices[f][k], b = network.facet_vertices[f][(k + 1) % 3];
       if (is_wall(a) || is_wall(b) || network.vertex_sphere[a] == network.vertex_sphere[b]) continue;

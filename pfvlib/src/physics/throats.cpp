@@ -235,7 +235,7 @@ void measure_piece(Throats& throats, const PoreNetwork& network, const PoreBound
 
 /// Throats that a thread takes at a time, and those whose halves are kept until they are added to the
 /// pores, which is done in order.
-constexpr int piece_size = 512, round_size = 32 * piece_size;
+constexpr int throats_per_piece = 512, throats_per_round = 32 * throats_per_piece;
 
 /// Calls visit(throat, pore, area) for both sides of each facet at a round wall.
 template <class Visit>
@@ -282,12 +282,12 @@ Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& bounda
   Throats throats;
   resize(throats, network);
   std::vector<Halves> halves;
-  for (int first = 0; first < network.throats(); first += round_size) {
-    const int last = std::min(first + round_size, network.throats());
+  for (int first = 0; first < network.throats(); first += throats_per_round) {
+    const int last = std::min(first + throats_per_round, network.throats());
     const int first_facet = network.throat_facets[first];
     halves.resize(network.throat_facets[last] - first_facet);
-    team.run((last - first + piece_size - 1) / piece_size, [&](int piece) {
-      const int begin = first + piece * piece_size, end = std::min(begin + piece_size, last);
+    team.run((last - first + throats_per_piece - 1) / throats_per_piece, [&](int piece) {
+      const int begin = first + piece * throats_per_piece, end = std::min(begin + throats_per_piece, last);
       measure_piece(throats, network, boundaries, spheres, begin, end,
                     halves.data() + network.throat_facets[begin] - first_facet);
     });

@@ -47,7 +47,7 @@ SumOrder sum_order(const ForceMatrix& forces, const Packing::Ids& ids, int pores
 /// depends on it. Cost: a pass over S.
 void reciprocal_rates(const ForceMatrix& forces, const SumOrder& order, const Bases& bases,
                       const Motion& motion, Team& team, Eigen::VectorXd& rates);
-/// What the rate of each pore is summed from, m³/s: it is exact to its round-off.
+/// The magnitude of the terms that the rate of each pore is summed from, m³/s: the rate is exact to its round-off.
 Eigen::VectorXd gross_rates(const ForceMatrix& forces, const Bases& bases, const Motion& motion,
                             int pores);
 

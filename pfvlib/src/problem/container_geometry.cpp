@@ -63,7 +63,7 @@ Extent extent_of(const std::vector<Polygon3>& polygons) {
   return extent;
 }
 
-/// The place that is as near as can be to all planes: in the middle of a closed set of them.
+/// The point with the least sum of squared distances from all planes: in the middle of a closed set of them.
 Vector middle_of(const std::vector<Surface>& planes) {
   Eigen::MatrixX3d normals(planes.size(), 3);
   Eigen::VectorXd offsets(planes.size());

@@ -18,12 +18,11 @@ Eigen::Matrix3Xd integrals_of(const BuiltNetwork& built, const Balance& balance)
                             balance.throat_fluxes, balance.contact_inflows);
 }
 
-void require_axis(int axis) {
-  if (axis < 0 || axis > 2)
-    throw InputError("axis " + std::to_string(axis) + ": the axes are 0, 1 and 2");
-}
-
 }  // namespace
+
+void require_axis(int axis) {
+  if (axis < 0 || axis > 2) throw InputError("axis " + std::to_string(axis) + ": give 0, 1 or 2 for x, y or z");
+}
 
 Eigen::Matrix3Xd pore_velocities(const BuiltNetwork& built, const Balance& balance) {
   Eigen::Matrix3Xd velocities = integrals_of(built, balance);

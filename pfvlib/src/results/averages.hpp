@@ -8,6 +8,8 @@ namespace pfv {
 
 // Velocities, fluxes and stresses of a solution: see Flow. `packed`: spheres in the packing.
 
+/// Throws InputError unless axis is 0, 1 or 2.
+void require_axis(int axis);
 Eigen::Matrix3Xd pore_velocities(const BuiltNetwork& built, const Balance& balance);
 Eigen::Matrix3Xd sphere_velocities(const BuiltNetwork& built, const Balance& balance,
                                    Eigen::Index packed);

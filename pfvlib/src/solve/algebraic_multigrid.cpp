@@ -37,17 +37,17 @@ void throw_error(const char* what) {
   throw std::runtime_error(what + std::string(" by hypre: ") + text);
 }
 
-class Vector {
+class HypreVector {
  public:
-  explicit Vector(HYPRE_Int size) : size_(size) {
+  explicit HypreVector(HYPRE_Int size) : size_(size) {
     HYPRE_IJVectorCreate(communicator(), first_row, first_row + size - 1, &vector_);
     HYPRE_IJVectorSetObjectType(vector_, HYPRE_PARCSR);
     HYPRE_IJVectorInitialize(vector_);
     HYPRE_IJVectorAssemble(vector_);
   }
-  ~Vector() { HYPRE_IJVectorDestroy(vector_); }
-  Vector(const Vector&) = delete;
-  Vector& operator=(const Vector&) = delete;
+  ~HypreVector() { HYPRE_IJVectorDestroy(vector_); }
+  HypreVector(const HypreVector&) = delete;
+  HypreVector& operator=(const HypreVector&) = delete;
 
   HYPRE_ParVector get() const {
     void* object = nullptr;
@@ -65,9 +65,9 @@ class Vector {
   HYPRE_IJVector vector_ = nullptr;
 };
 
-class Matrix {
+class HypreMatrix {
  public:
-  explicit Matrix(const SymmetricMatrix& matrix) {
+  explicit HypreMatrix(const SymmetricMatrix& matrix) {
     const HYPRE_Int size = matrix.size();
     HYPRE_IJMatrixCreate(communicator(), first_row, first_row + size - 1, first_row, first_row + size - 1, &matrix_);
     HYPRE_IJMatrixSetObjectType(matrix_, HYPRE_PARCSR);
@@ -81,9 +81,9 @@ class Matrix {
     HYPRE_IJMatrixSetValues(matrix_, size, entries.data() + 1, rows.data(), columns.data(), matrix.value.data());
     HYPRE_IJMatrixAssemble(matrix_);
   }
-  ~Matrix() { HYPRE_IJMatrixDestroy(matrix_); }
-  Matrix(const Matrix&) = delete;
-  Matrix& operator=(const Matrix&) = delete;
+  ~HypreMatrix() { HYPRE_IJMatrixDestroy(matrix_); }
+  HypreMatrix(const HypreMatrix&) = delete;
+  HypreMatrix& operator=(const HypreMatrix&) = delete;
 
   HYPRE_ParCSRMatrix get() const {
     void* object = nullptr;
@@ -132,8 +132,8 @@ struct AlgebraicMultigrid::Hierarchy {
   Hierarchy(const Hierarchy&) = delete;
   Hierarchy& operator=(const Hierarchy&) = delete;
 
-  Matrix matrix;
-  Vector right_side, solution;
+  HypreMatrix matrix;
+  HypreVector right_side, solution;
   HYPRE_Solver amg = nullptr;
 };
 

@@ -12,7 +12,7 @@
 namespace pfv {
 namespace {
 
-constexpr int most_iterations = 500;
+constexpr int most_cycles = 500;
 constexpr int first_look = 2;  // iterations from x = 0 after which x tells how much flows
 constexpr double drift = 2.0;  // b - A x over its recurrence, from which on the recurrence is of no use
 constexpr double lost = 1e-6;  // error of pressures, of the largest, that rounding may cost
@@ -123,7 +123,7 @@ void AmgSolver::iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   set_out(recurrence.r);
   if (is_solved(x, recurrence)) return;
   double end = tolerated(recurrence);
-  while (iterations_ < most_iterations && advance(x, recurrence.r)) {
+  while (iterations_ < most_cycles && advance(x, recurrence.r)) {
     ++iterations_;
     recurrence.size = recurrence.r.norm();
     if (recurrence.size > end && iterations_ != first_look) continue;

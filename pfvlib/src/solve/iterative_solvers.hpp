@@ -14,7 +14,7 @@ class IterativeSolver : public CheckedSolver {
       : CheckedSolver(kind), tolerance_(tolerance) {}
 
  protected:
-  /// Where to set out from, in place of the x of the caller: 0, so that one b gives one x.
+  /// The starting vector, in place of the x of the caller: 0, so that one b gives one x.
   virtual void begin(const Eigen::VectorXd& b, Eigen::VectorXd& x);
   virtual void iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;  ///< from x on
   void analyze_pattern(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd&) override;

@@ -9,8 +9,8 @@
 
 namespace pfv {
 
-/// From the last solutions of A x = b a beginning for the next one: the last one and the combination of the changes
-/// that led to it whose error is least in the norm of A (Fischer 1998, with the newest changes kept).
+/// A starting vector for the next solve of A x = b, from the last solutions: the last one plus the combination of
+/// the changes that led to it whose error is least in the norm of A (Fischer 1998, with the newest changes kept).
 class LastSolutions {
  public:
   /// `most`: changes that are kept, each with 8 bytes an unknown.

@@ -11,7 +11,7 @@ namespace {
 /// Passes end at the first that gains nothing; more than these rarely do.
 constexpr int most_passes = 6;
 /// Moves without a smaller separator after which a pass gives up.
-constexpr int patience = 100;
+constexpr int moves_without_gain = 100;
 
 constexpr int number(Side side) { return static_cast<int>(side); }
 
@@ -102,7 +102,7 @@ void SeparatorRefinement::pass(int largest) {
   const auto difference = [&] { return std::abs(size_[0] - size_[1]); };
   int best = size_[number(Side::separator)], best_difference = difference();
   std::size_t best_moves = 0;
-  while (moves_.size() < best_moves + patience) {
+  while (moves_.size() < best_moves + moves_without_gain) {
     Side to = size_[0] <= size_[1] ? Side::first : Side::second;  // of equals, the smaller set
     int vertex = pop(to, -gains);
     const int here = vertex < 0 ? -gains : std::max(gain(vertex, to), 2 - gains);

@@ -254,6 +254,24 @@ int SupernodalFactor::factor_subtree(Range range, const SymmetricRows& matrix, W
   return none;
 }
 
+namespace {
+
+/// visit(rows, thread) for all of the rows, shared between the threads where so many multiplications are worth it.
+template <class Range, class Visit>
+void in_pieces(Range all, double multiplications, Team& team, const Visit& visit) {
+  const int threads = multiplications > worth_sharing ? team.threads() : 1;
+  const int pieces = threads == 1 ? 1 : pieces_per_thread * threads;
+  const int count = all.end - all.begin, piece = rounded_up(count / pieces + 1, tile_rows);
+  const auto visit_piece = [&](int k, int thread) {
+    const Range rows{all.begin + std::min(k * piece, count), all.begin + std::min((k + 1) * piece, count)};
+    if (rows.begin < rows.end) visit(rows, thread);
+  };
+  if (threads == 1) return visit_piece(0, 0);
+  team.run_with_space(pieces, visit_piece);
+}
+
+}  // namespace
+
 /// The blocks above the subtrees, one after the other, each shared by rows.
 int SupernodalFactor::factor_above(const SymmetricRows& matrix, std::vector<WorkSpace>& work,
                                    Team& team) {
@@ -279,28 +297,16 @@ int SupernodalFactor::factor_above(const SymmetricRows& matrix, std::vector<Work
       products += static_cast<double>(b.height - begin) * (done - begin) * b.columns;
       link(from, true);
     }
-    const auto in_pieces = [&](int first, double multiplications, const auto& visit) {
-      const int threads = multiplications > worth_sharing ? team.threads() : 1;
-      const int pieces = threads == 1 ? 1 : pieces_per_thread * threads;
-      const int piece = rounded_up((block.height - first) / pieces + 1, tile_rows);
-      const auto visit_piece = [&](int k, int thread) {
-        const Range rows{first + std::min(k * piece, block.height - first),
-                         first + std::min((k + 1) * piece, block.height - first)};
-        if (rows.begin < rows.end) visit(rows, work[thread]);
-      };
-      if (threads == 1) return visit_piece(0, 0);
-      team.run_with_space(pieces, visit_piece);
-    };
-    in_pieces(0, products, [&](Range rows, WorkSpace& own) {
+    in_pieces(Range{0, block.height}, products, team, [&](Range rows, int thread) {
       for (std::size_t k = 0; k < shared.updating.size(); ++k)
-        subtract(blocks_[shared.updating[k]], columns[k], block, rows, shared.place, own);
+        subtract(blocks_[shared.updating[k]], columns[k], block, rows, shared.place, work[thread]);
     });
     for (int j = 0; j < block.columns; ++j) pivot[j] = lost_pivot_ * std::abs(pivot[j]);
     const int lost = eliminate_diagonal(block, pivot, inverse_pivot, shared);
     if (lost != none) return block.first_column + lost;
     const double* const top = top_of(block, shared);
-    in_pieces(block.columns, 0.5 * block.height * block.columns * block.columns,
-              [&](Range rows, WorkSpace&) { eliminate_rows(block, inverse_pivot, top, rows); });
+    in_pieces(Range{block.columns, block.height}, 0.5 * block.height * block.columns * block.columns, team,
+              [&](Range rows, int) { eliminate_rows(block, inverse_pivot, top, rows); });
     done_rows_[current] = block.columns;
     link(current, true);
   }

@@ -117,22 +117,14 @@ void SupernodalSolve::analyze(const Supernodes& supernodes, const SubtreeCut& cu
   values_ = nullptr;
   entries_ = 0;
   top_columns_.clear();
-  std::vector<int> part_of(supernodes.count, -1), number_above(supernodes.columns, -1);
+  Places places{std::vector<int>(supernodes.count, -1), std::vector<int>(supernodes.columns, -1),
+                std::vector<std::int64_t>(supernodes.count)};
   for (const int s : cut.above)
     for (int c = supernodes.first_column[s]; c < supernodes.first_column[s + 1]; ++c) {
-      number_above[c] = static_cast<int>(top_columns_.size());
+      places.above[c] = static_cast<int>(top_columns_.size());
       top_columns_.push_back(c);
     }
   const auto above = static_cast<int>(top_columns_.size());
-  const auto take_rows = [&](Part& part, std::vector<std::int64_t>& begin, int s) {
-    begin[s] = static_cast<std::int64_t>(part.rows.size());
-    for (int i = supernodes.rows_begin[s]; i < supernodes.rows_begin[s + 1]; ++i) {
-      const int row = supernodes.rows[i];
-      part.rows.push_back(number_above[row] < 0 ? row - part.first_column
-                                                : part.columns + number_above[row]);
-    }
-  };
-  std::vector<std::int64_t> begin(supernodes.count);
   subtrees_.assign(cut.subtrees.size(), {});
   for (std::size_t k = 0; k < subtrees_.size(); ++k) {
     const auto [first, end] = cut.subtrees[k];
@@ -142,23 +134,37 @@ void SupernodalSolve::analyze(const Supernodes& supernodes, const SubtreeCut& cu
     part.y.assign(part.columns + above, 0.0);
     part.rows.reserve(supernodes.rows_begin[end] - supernodes.rows_begin[first]);
     for (int s = first; s < end; ++s) {
-      take_rows(part, begin, s);
-      part_of[s] = static_cast<int>(k);
+      take_rows(supernodes, s, part, places);
+      places.part[s] = static_cast<int>(k);
     }
   }
   top_ = {};
   top_.y.assign(above, 0.0);
-  for (const int s : cut.above) take_rows(top_, begin, s);
+  for (const int s : cut.above) take_rows(supernodes, s, top_, places);
+  take_panels(supernodes, blocks, places);
+}
+
+/// The rows of supernode s, by the numbers that its part gives them.
+void SupernodalSolve::take_rows(const Supernodes& supernodes, int s, Part& part, Places& places) {
+  places.rows_begin[s] = static_cast<std::int64_t>(part.rows.size());
+  for (int i = supernodes.rows_begin[s]; i < supernodes.rows_begin[s + 1]; ++i) {
+    const int row = supernodes.rows[i];
+    part.rows.push_back(places.above[row] < 0 ? row - part.first_column : part.columns + places.above[row]);
+  }
+}
+
+void SupernodalSolve::take_panels(const Supernodes& supernodes, const std::vector<FactorBlock>& blocks,
+                                  const Places& places) {
   std::int64_t value = 0;
   int s = 0;
   for (const FactorBlock& block : blocks) {
     while (supernodes.first_column[s + 1] <= block.first_column) ++s;
-    Part& part = part_of[s] < 0 ? top_ : subtrees_[part_of[s]];
+    const bool is_above = places.part[s] < 0;
+    Part& part = is_above ? top_ : subtrees_[places.part[s]];
     for_each_piece(block, [&](int done, int width) {
       Panel panel = panel_of(block, done, width);
-      panel.first_column = part_of[s] < 0 ? number_above[panel.first_column]
-                                          : panel.first_column - part.first_column;
-      panel.first_row += begin[s] - supernodes.rows_begin[s];
+      panel.first_column = is_above ? places.above[panel.first_column] : panel.first_column - part.first_column;
+      panel.first_row += places.rows_begin[s] - supernodes.rows_begin[s];
       panel.first_value = value;
       value += entries_of(panel);
       part.panels.push_back(panel);

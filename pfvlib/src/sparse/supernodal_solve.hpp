@@ -65,6 +65,15 @@ class SupernodalSolve {
     int first_column = 0;   ///< of a subtree
   };
 
+  /// Where the analysis has put what.
+  struct Places {
+    std::vector<int> part;                 ///< of each supernode: number of its subtree, or -1
+    std::vector<int> above;                ///< of each column: number among those above the subtrees, or -1
+    std::vector<std::int64_t> rows_begin;  ///< of each supernode, in its part
+  };
+
+  static void take_rows(const Supernodes& supernodes, int s, Part& part, Places& places);
+  void take_panels(const Supernodes& supernodes, const std::vector<FactorBlock>& blocks, const Places& places);
   template <class Value>
   void substitute(const Value* values, const double* b, double* x, Team& team);
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/fluid_memory.hpp"
 
+#include "pfv/error.hpp"
 #include "problem/container_geometry.hpp"
+
+#include <string>
 
 namespace pfv {
 
@@ -17,7 +20,12 @@ double compressed_in(const BuiltNetwork& built, const Fluid& fluid,
 void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
                      const Fluid& fluid) {
   const int pores = now.network.pores();
-  if (static_cast<int>(memory.restored.size()) == pores && pores > 0)
+  if (!memory.restored.empty() && static_cast<int>(memory.restored.size()) != pores)
+    throw InputError("the state that was set has " + std::to_string(memory.restored.size()) +
+                     " pore pressures, and the network of this packing has " + std::to_string(pores) +
+                     " pores: restart with the packing, the container and the settings that the state was "
+                     "taken with, or set a state without pressures, from which the fluid begins at 0 Pa");
+  if (!memory.restored.empty())
     memory.pressures = Eigen::Map<const Eigen::VectorXd>(memory.restored.data(), pores);
   else if (before.network && memory.pressures.size() > 0 &&
            memory.pressures.size() == before.network->network.pores())
@@ -60,7 +68,9 @@ void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetw
 
 void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
                 const Problem& problem, double swept) {
+  const bool restored = !memory.restored.empty();
   carry_pressures(memory, before, now, problem.fluid);
+  if (restored && memory.account.open) return;  // the state is that of these grains: there is nothing to settle
   settle_account(memory, before, now, problem, swept);
 }
 

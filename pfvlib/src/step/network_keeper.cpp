@@ -123,17 +123,12 @@ void NetworkKeeper::take_up(std::unique_ptr<BuiltNetwork> fresh, const Problem& 
 /// Whether the grains or the boundaries are others than those of the network, whatever the strain.
 bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) const {
   if (stale_ || !built_) return true;
-  if (packing.size() != packed() || !std::equal(ids_.begin(), ids_.end(), packing.ids.data()))
-    return true;
   const ActiveGrains& grains = built_->grains;
   if (!holds_the_same(grains, packing)) return true;
+  if (!same_grains(packing, problem.container, ids_, grains.columns)) return true;
   const double strain = problem.options.retriangulation_strain;
-  std::size_t next = 0;
-  for (Eigen::Index k = 0; k < packing.size(); ++k) {
-    const bool active = next < grains.columns.size() && grains.columns[next] == k;
-    if (is_inside(packing, k, problem.container) != active) return true;
-    if (!active) continue;
-    const auto i = static_cast<Eigen::Index>(next++);
+  for (Eigen::Index i = 0; i < grains.spheres.radii.size(); ++i) {
+    const int k = grains.columns[i];
     const double radius = grains.spheres.radii[i];
     const double grown = std::abs(packing.radii[k] - radius);
     Eigen::Vector3d moved = packing.positions.col(k) - built_->network.origin -

@@ -39,8 +39,8 @@ struct Replaced {
   bool moved_by_host = false;             ///< the host has asked for the new one
 };
 
-/// The network in use: knows when it no longer is that of the grains, and sees to the next one, at once or in
-/// the background.
+/// The network in use: knows when it no longer matches the grains, and builds the next one, at once or in the
+/// background.
 class NetworkKeeper {
  public:
   /// Called for each network that is taken up.
@@ -60,7 +60,7 @@ class NetworkKeeper {
   BuiltNetwork& update(const Packing& packing, const Problem& problem, const Wanted& wanted,
                        WorkRecord& work, const TakenUp& taken_up);
 
-  /// The next update builds anew. `by_host`: since grains or faces have been put elsewhere.
+  /// The next update builds anew. `by_host`: because it has moved grains or faces.
   void discard(bool by_host);
   /// Takes in the strain of a step.
   void strain(const Solution& solution) { strain_.add(*built_, solution); }
