@@ -162,12 +162,12 @@ void compare(int spheres) {
   }
   ImplicitSystem k;
   const double k_made = milliseconds([&] {
-    k = assemble_implicit(scene.system, scene.unknowns, scene.forces, scene.bases, yielding, {}, 1.0);
+    k = assemble_implicit(scene.system, scene.unknowns, scene.forces, scene.bases, yielding, {}, nullptr);
   });
   Eigen::Matrix3Xd places(3, k.matrix.size());
   places.leftCols(count) = scene.places;
   for (std::size_t v = 0; v < k.velocities.size(); ++v)
-    places.col(count + static_cast<Eigen::Index>(v)) = scene.stages.spheres.centres.col(k.velocities[v].grain);
+    places.col(count + static_cast<Eigen::Index>(v)) = scene.stages.spheres.centres.col(k.velocities[v].mover);
   Eigen::VectorXd both = Eigen::VectorXd::Zero(k.matrix.size());
   both.head(count) = -b;
   for (const OrderingKind kind : orderings) {

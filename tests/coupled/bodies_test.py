@@ -134,7 +134,7 @@ class Bodies(CoupledTest):
         """The pair some time after it had 1 mm/s, and the limit that was printed: the fluid brakes it under its weight."""
         steps = round(time / step)
         flow = GRAVITY.replace("10.0", "0.5") + (
-            f"fix flow all pfv viscosity {viscosity} density 100 {CLOSE} coupling {coupling} shear_viscous {shear}\n")
+            f"fix flow all pfv viscosity {viscosity} density 100 {CLOSE} coupling {coupling} shear_viscous {shear} open_water no\n")
         screen = self.liggghts(self.go_on(flow, step) + f"run {steps}\n", ranks=ranks)
         return self.pairs()[steps], float(screen.split("limit of the explicit coupling")[1].split()[0])
 
@@ -216,7 +216,7 @@ class Rigid(CoupledTest):
 
     def falling(self, coupling, step):
         """Twice as dense, 1 ms after it was let go, and the limit."""
-        flow = GRAVITY + f"fix flow all pfv viscosity 12500 density 500 {CLOSE} coupling {coupling}\n"
+        flow = GRAVITY + f"fix flow all pfv viscosity 12500 density 500 {CLOSE} coupling {coupling} open_water no\n"
         screen = self.liggghts(self.script(flow, step) + f"run {round(1e-3 / step)}\n")
         return self.pairs()[-1], float(screen.split("limit of the explicit coupling")[1].split()[0])
 

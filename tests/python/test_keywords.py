@@ -59,7 +59,7 @@ class Keywords(unittest.TestCase):
                                 ({"model": "darcy_grid"}, "needs the numbers of its cells"),
                                 ({"viscosity": float("nan")}, "viscosity"), ({"threads": True}, "threads"),
                                 ({"shear_viscous": True, "coupling": "implicit", "solver": "cholmod"},
-                                 "no implicit steps with shear")):
+                                 "solves no implicit steps")):
             with self.subTest(keywords=keywords), self.assertRaisesRegex(pfv.InputError, words):
                 pfv.Flow(UNIT, **keywords)
         for keywords in ({"viscosity": None}, {"solver": object()}, {"viscosity": 1j}):

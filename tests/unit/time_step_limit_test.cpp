@@ -97,7 +97,9 @@ TEST(TimeStepLimit, GoesWithTheMassesAndWithOneOverTheViscosity) {
 TEST(TimeStepLimit, IsInfiniteWhereNothingIsUnknown) {
   pfv::Box box;
   for (const pfv::Face face : pfv::all_faces) box[face].boundary = pfv::Boundary::pressure(0.0);
-  pfv::Flow flow(box, viscosity_one());
+  pfv::Options without;
+  without.open_water = false;
+  pfv::Flow flow(box, viscosity_one(), without);
   const auto packing = packing_of({{0.5, 0.5, 0.5, 0.2}});
   flow.evaluate(packing.view());
   EXPECT_EQ(flow.time_step_limit(Eigen::VectorXd::Ones(1)),

@@ -162,10 +162,6 @@ void gather_spheres(const Packing& packing, const Eigen::Vector3d& lower, const 
   }
 }
 
-}  // namespace
-
-namespace {
-
 bool has_bodies(const Packing& packing) { return (packing.bodies.array() >= 0).any(); }
 
 }  // namespace

@@ -25,10 +25,9 @@ Matrix3d bead_mobility(double one, double other, const Vector3d& apart) {
 
 namespace {
 
-Vector3d nearest_image(const Spheres& spheres, Vector3d apart) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (spheres.periodic[axis]) apart[axis] -= spheres.edges[axis] * std::round(apart[axis] / spheres.edges[axis]);
-  return apart;
+Vector3d nearest_image(const Spheres& spheres, const Vector3d& apart) {
+  const Lattice lattice = spheres.lattice();
+  return apart - lattice.displacement(lattice.periods(apart, [](double x) { return std::round(x); }));
 }
 
 }  // namespace

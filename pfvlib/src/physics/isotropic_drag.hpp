@@ -25,8 +25,8 @@ inline constexpr double open_fraction = 0.2;
 /// over the facets f around it, seen under the solid angles Omega_f (4 pi in all): Stokes' drag as a mean over the
 /// directions, but twice as much along one as along another where few facets stand around it askew. The resistance
 /// of each facet is multiplied with s = n^T B n, B the symmetric matrix nearest to 1 for which the sum is 6 pi mu r;
-/// a throat takes the mean over its solid surface, no-slip walls counting for 1. Lattices keep theirs, and so does what is
-/// denser than `open_fraction`. `conductances`: of each throat, by the open-throat law. Cost: as above.
+/// a throat takes the mean over its solid surface, no-slip walls counting for 1. Lattices keep theirs, and so does
+/// what is denser than `open_fraction`. `conductances`: of each throat, by the open-throat law. Cost: as above.
 void make_drag_isotropic(const PoreNetwork& network, const Throats& throats, const Spheres& vertices,
                          std::vector<double>& conductances);
 

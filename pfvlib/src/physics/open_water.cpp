@@ -2,6 +2,7 @@
 #include "physics/open_water.hpp"
 
 #include "geometry/pi.hpp"
+#include "network/pore_boundaries.hpp"
 #include "physics/bead_mobility.hpp"
 #include "physics/isotropic_drag.hpp"
 
@@ -38,29 +39,38 @@ struct ThroatLists {
   }
 };
 
-/// S_k G_k^-1 S_k^T of the pores around sphere k, kg/s. The pores around them hold their pressure, by which it is no
-/// larger than the whole network's.
+/// Spheres that move as one: a body's, or one alone.
+struct Group {
+  std::vector<int> spheres;
+  std::vector<Matrix3d> unbounded;  ///< drag of each in unbounded fluid, over 6 pi mu, m
+};
+
+/// S_k G_k^-1 S_k^T of the pores around these spheres, kg/s. The pores around them hold their pressure, by which it is
+/// no larger than the whole network's.
 Matrix3d drag_of_pores(const PoreNetwork& network, const Conductances& conductances, const ForceMatrix& matrix,
-                       const std::vector<char>& imposed, const ThroatLists& lists, int k) {
-  const int begin = matrix.row_begin[k], end = matrix.row_begin[k + 1];
-  std::map<int, int> place;  // among the unknown ones; -1: imposed
-  int count = 0;
-  for (int e = begin; e < end; ++e) place[matrix.pore[e]] = imposed[matrix.pore[e]] ? -1 : count++;
+                       const std::vector<char>& imposed, const ThroatLists& lists, const Group& group) {
+  std::map<int, Vector3d> sources;
+  for (const int k : group.spheres)
+    for (int e = matrix.row_begin[k]; e < matrix.row_begin[k + 1]; ++e)
+      if (!imposed[matrix.pore[e]])
+        sources.emplace(matrix.pore[e], Vector3d::Zero()).first->second += matrix.value.col(e).head<3>();
+  std::map<int, int> place;
+  for (const auto& [pore, source] : sources) place.emplace(pore, static_cast<int>(place.size()));
+  const auto count = static_cast<Eigen::Index>(place.size());
+  if (count == 0) return Matrix3d::Zero();
   Eigen::MatrixXd g = Eigen::MatrixXd::Zero(count, count);
   Eigen::MatrixX3d s = Eigen::MatrixX3d::Zero(count, 3);
-  for (int e = begin; e < end; ++e)
-    if (const int i = place[matrix.pore[e]]; i >= 0) s.row(i) = matrix.value.col(e).head<3>();
   for (const auto& [pore, i] : place) {
-    if (i < 0) continue;
+    s.row(i) = sources[pore];
     for (int l = lists.begin[pore]; l < lists.begin[pore + 1]; ++l) {
       const int t = lists.throat[l];
       const auto& [first, second] = network.throat_pores[t];
       const auto other = place.find(first == pore ? second : first);
       g(i, i) += conductances.value[t];
-      if (other != place.end() && other->second >= 0) g(i, other->second) -= conductances.value[t];
+      if (other != place.end()) g(i, other->second) -= conductances.value[t];
     }
+    if (g(i, i) == 0.0) s.row(i).setZero();  // closed: its pressure is that of another pore
   }
-  if (count == 0) return Matrix3d::Zero();
   // a set without an imposed pressure is free to shift: the sources of a sphere add up to 0 in it
   g.diagonal().array() += 1e-10 * g.diagonal().maxCoeff();
   const Matrix3d drag = s.transpose() * g.ldlt().solve(s);
@@ -79,14 +89,15 @@ bool is_periodic(const Container& container, int face) {
 /// By how much a wall changes the mobility of sphere k, over that in unbounded fluid.
 Matrix3d change_at_wall(const Spheres& spheres, int k, int wall, PlaneKind kind) {
   const Vector3d n = spheres.outward(k, wall_vertex(wall));
-  const auto [along, towards] = mobility_beside_plane(kind, spheres.radii[k], spheres.distance(k, wall));
-  const Matrix3d across = n * n.transpose();
-  Matrix3d change = (towards - 1.0) * across + (along - 1.0) * (Matrix3d::Identity() - across);
+  auto [along, towards] = mobility_beside_plane(kind, spheres.radii[k], spheres.distance(k, wall));
   const WallSurface& surface = spheres.walls[wall];
-  if (surface.is_plane() || kind != PlaneKind::no_slip) return change;
-  const double around = -haberman * spheres.radii[k] / surface.surface.radius;
-  change.diagonal() = change.diagonal().cwiseMin(around);
-  return change;
+  if (!surface.is_plane() && kind == PlaneKind::no_slip) {
+    const double around = 1.0 - haberman * spheres.radii[k] / surface.surface.radius;
+    along = std::min(along, around);
+    towards = std::min(towards, around);
+  }
+  const Matrix3d across = n * n.transpose();
+  return (towards - 1.0) * across + (along - 1.0) * (Matrix3d::Identity() - across);
 }
 
 /// W: drag beside the walls over that in unbounded fluid.
@@ -109,19 +120,21 @@ Matrix3d wall_correction(const Container& container, const Spheres& spheres, int
   return parts.eigenvectors() * bounded.cwiseInverse().asDiagonal() * parts.eigenvectors().transpose();
 }
 
-/// Drag in unbounded fluid over 6 pi mu, m, of the spheres in open water that a body holds.
-std::map<int, Matrix3d> drags_in_bodies(const Spheres& spheres, const std::vector<int>& body, const std::vector<int>& open) {
+/// The spheres in open water by themselves, or with all others of their bodies.
+std::vector<Group> groups_of(const Spheres& spheres, const std::vector<int>& body, const std::vector<int>& open) {
   std::map<int, std::vector<int>> members;
-  for (const int k : open)
-    if (!body.empty() && body[k] >= 0) members[body[k]];
   for (int k = 0; k < static_cast<int>(body.size()); ++k)
-    if (const auto found = members.find(body[k]); found != members.end()) found->second.push_back(k);
-  std::map<int, Matrix3d> drags;
-  for (const auto& [number, beads] : members) {
-    const std::vector<Matrix3d> of_beads = drags_of_beads(spheres, beads);
-    for (std::size_t i = 0; i < beads.size(); ++i) drags[beads[i]] = of_beads[i];
+    if (body[k] >= 0) members[body[k]].push_back(k);
+  std::vector<Group> groups;
+  for (const int k : open) {
+    if (body.empty() || body[k] < 0 || members[body[k]].size() == 1) {
+      groups.push_back({{k}, {spheres.radii[k] * Matrix3d::Identity()}});
+    } else if (std::vector<int>& beads = members[body[k]]; !beads.empty()) {
+      groups.push_back({beads, drags_of_beads(spheres, beads)});
+      beads.clear();  // taken
+    }
   }
-  return drags;
+  return groups;
 }
 
 Matrix3d positive_part(const Matrix3d& matrix) {
@@ -133,8 +146,9 @@ Matrix3d positive_part(const Matrix3d& matrix) {
 class Surroundings {
  public:
   Surroundings(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices,
-               const Container& container, const std::vector<int>& body)
-      : network_(network), spheres_(spheres), vertices_(vertices), container_(container), body_(body) {}
+               const Container& container, const std::vector<int>& body, bool still)
+      : network_(network), spheres_(spheres), vertices_(vertices), container_(container), body_(body),
+        still_(still) {}
 
   void look(const Throats& throats, std::vector<OpenWaterDrag>& drags) {
     std::vector<int> place(spheres_.size(), -1);
@@ -157,7 +171,7 @@ class Surroundings {
     std::map<Packing::Ids::Scalar, std::pair<int, double>> of_sphere;  ///< by id
     std::vector<double> of_wall;
     Vector3d periods = Vector3d::Zero();
-    double all = 0.0;
+    double all = 0.0, of_small = 0.0;  ///< of_small: left to the faces
   };
 
   void see(View& view, Vertex own, Vertex other, double area) const {
@@ -167,7 +181,10 @@ class Surroundings {
     } else if (const int sphere = network_.vertex_sphere[other]; !move_together(network_.vertex_sphere[own], sphere)) {
       auto& [column, seen] = view.of_sphere[spheres_.ids[sphere]];
       column = sphere;
-      seen += weight;
+      // what is much smaller counts for less, as its own flow reaches less far
+      const double part = std::min(1.0, 2.0 * spheres_.radii[sphere] / spheres_.radii[network_.vertex_sphere[own]]);
+      seen += part * weight;
+      view.of_small += (1.0 - part) * weight;
       view.periods += weight * (periods_of(other) - periods_of(own));
     } else {
       return;
@@ -181,10 +198,10 @@ class Surroundings {
 
   Vector3d periods_of(Vertex vertex) const {
     Vector3d periods = Vector3d::Zero();
-    for (int axis = 0; axis < 3; ++axis)
-      if (spheres_.periodic[axis])
-        periods[axis] = std::round((vertices_.centres(axis, vertex) -
-                                    spheres_.centres(axis, network_.vertex_sphere[vertex])) / spheres_.edges[axis]);
+    const Lattice::Shift shift = spheres_.lattice().periods(
+        vertices_.centres.col(vertex) - spheres_.centres.col(network_.vertex_sphere[vertex]),
+        [](double x) { return std::round(x); });
+    for (int axis = 0; axis < 3; ++axis) periods[axis] = shift[axis];
     return periods;
   }
 
@@ -200,6 +217,7 @@ class Surroundings {
     if (!(view.all > 0.0)) return;
     drag.periods = view.periods / view.all;
     for (const auto& [id, seen] : view.of_sphere) drag.neighbours.push_back({seen.first, seen.second / view.all});
+    if (!still_) return;
     double of_walls = 0.0;
     Matrix3d sum = Matrix3d::Zero();
     for (int f = 0; f < spheres_.wall_count(); ++f) {
@@ -208,6 +226,7 @@ class Surroundings {
       sum += view.of_wall[f] * carried_by(f, drag.sphere);
     }
     if (!(of_walls > 0.0)) return;
+    of_walls += view.of_small / view.all;
     const Matrix3d inverse = pseudo_inverse(sum);
     for (int f = 0; f < spheres_.wall_count(); ++f)
       if (view.of_wall[f] > 0.0 && !is_periodic(container_, f))
@@ -228,8 +247,29 @@ class Surroundings {
   const Spheres &spheres_, &vertices_;
   const Container& container_;
   const std::vector<int>& body_;
+  const bool still_;
   std::vector<View> views_;
 };
+
+/// A sphere that others lean on is braked by these reactions as well, and lacks so much less: R of each is the part >=
+/// 0 of what is missing less what the others' R do to it. A few damped rounds; what is left over is too much, not too
+/// little.
+void settle_reactions(std::vector<OpenWaterDrag>& drags, int spheres) {
+  constexpr int rounds = 6;
+  std::vector<Matrix3d> missing, reactions;
+  for (OpenWaterDrag& drag : drags) {
+    missing.push_back(drag.resistance);
+    drag.resistance = positive_part(drag.resistance);
+  }
+  for (int round = 0; round < rounds; ++round) {
+    reactions.assign(spheres, Matrix3d::Zero());
+    for (const OpenWaterDrag& drag : drags)
+      for (const auto& [sphere, weight] : drag.neighbours) reactions[sphere] += weight * weight * drag.resistance;
+    for (std::size_t i = 0; i < drags.size(); ++i)
+      drags[i].resistance =
+          0.5 * (drags[i].resistance + positive_part(missing[i] - reactions[drags[i].sphere]));
+  }
+}
 
 /// What a drag makes of the velocity of each sphere: of its own the part that anything around resists.
 std::vector<std::pair<int, Matrix3d>> weights_of(const OpenWaterDrag& drag) {
@@ -245,6 +285,23 @@ std::vector<std::pair<int, Matrix3d>> weights_of(const OpenWaterDrag& drag) {
 }
 
 }  // namespace
+
+bool is_still(const Container& container) {
+  if (!container.pressure_gradient.isZero(0.0)) return false;
+  int open = 0;
+  bool driven = false;
+  double pressure = std::numeric_limits<double>::quiet_NaN();
+  for (int number = 0; number < boundary_count(container); ++number) {
+    const Boundary& boundary = boundary_of(container, number);
+    if (!boundary.is_open()) continue;
+    ++open;
+    driven = driven || boundary.drives_flux() || boundary.profile;
+    if (!boundary.imposes_pressure()) continue;
+    driven = driven || (std::isfinite(pressure) && boundary.value != pressure);
+    pressure = boundary.value;
+  }
+  return open < 2 || !driven;
+}
 
 WallMobility mobility_beside_plane(PlaneKind kind, double radius, double distance) {
   const double q = 1.0 / std::max(distance / radius, nearest);
@@ -264,7 +321,8 @@ std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Sp
                                             const Throats& throats, const Conductances& conductances,
                                             const ForceMatrix& matrix, const std::vector<char>& imposed,
                                             const Container& container, double viscosity,
-                                            const std::vector<ResistanceBlock>& others, const std::vector<int>& body) {
+                                            const std::vector<ResistanceBlock>& others, const std::vector<int>& body,
+                                            bool still) {
   const std::vector<double> fractions = solid_fractions_around(network, throats, vertices);
   std::vector<int> open;
   for (int k = 0; k < static_cast<int>(fractions.size()); ++k)
@@ -273,22 +331,27 @@ std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Sp
   if (open.empty()) return drags;
   std::sort(open.begin(), open.end(), [&](int a, int b) { return spheres.ids[a] < spheres.ids[b]; });
   const ThroatLists lists(network);
-  const std::map<int, Matrix3d> in_bodies = drags_in_bodies(spheres, body, open);
-  const auto unbounded = [&](int k) {
-    const auto found = in_bodies.find(k);
-    return found == in_bodies.end() ? Matrix3d(spheres.radii[k] * Matrix3d::Identity()) : found->second;
-  };
   std::vector<Matrix3d> known(spheres.size(), Matrix3d::Zero());
   for (const auto& [of, by, block] : others)
     if (of == by) known[of] += block;
-  for (const int k : open) {
-    const double stokes = 6.0 * pi * viscosity * spheres.radii[k];
-    const Matrix3d walls = wall_correction(container, spheres, k), free = unbounded(k);
-    const Matrix3d left_out = positive_part(3.0 * pi * viscosity * (walls * free + free * walls) -
-                                            drag_of_pores(network, conductances, matrix, imposed, lists, k) - known[k]);
-    if (left_out.diagonal().maxCoeff() > negligible * stokes) drags.push_back({k, left_out, {}, Vector3d::Zero(), {}});
+  for (const Group& group : groups_of(spheres, body, open)) {
+    Matrix3d missing = -drag_of_pores(network, conductances, matrix, imposed, lists, group);
+    double traces = 0.0;
+    for (std::size_t i = 0; i < group.spheres.size(); ++i) {
+      const Matrix3d walls = wall_correction(container, spheres, group.spheres[i]);
+      missing += 3.0 * pi * viscosity * (walls * group.unbounded[i] + group.unbounded[i] * walls);
+      missing -= known[group.spheres[i]];
+      traces += group.unbounded[i].trace();
+    }
+    for (std::size_t i = 0; i < group.spheres.size(); ++i)
+      drags.push_back({group.spheres[i], group.unbounded[i].trace() / traces * missing, {}, Vector3d::Zero(), {}});
   }
-  Surroundings(network, spheres, vertices, container, body).look(throats, drags);
+  Surroundings(network, spheres, vertices, container, body, still).look(throats, drags);
+  settle_reactions(drags, spheres.size());
+  drags.erase(std::remove_if(drags.begin(), drags.end(), [&](const OpenWaterDrag& drag) {
+                return (drag.neighbours.empty() && drag.faces.empty()) ||
+                       drag.resistance.diagonal().maxCoeff() <= negligible * viscosity * spheres.radii[drag.sphere];
+              }), drags.end());
   return drags;
 }
 

@@ -45,19 +45,24 @@ struct OpenWaterDrag {
 ///
 ///     R = the part >= 0 of  6 pi mu r W - S_k G_k^-1 S_k^T - other resistances to it (`others`),
 ///
-/// G_k of its own pores, those around held, W the correction for walls: of no-slip planes Faxen's along them and that of Bevan &
-/// Prieve (2000, Journal of Chemical Physics 113, 1228) towards them, one after the other; of the nearest slip or
-/// open one the image of a Stokeslet; nearer than 1.5 radii that of 1.5. In a round wall no less than Haberman's on
-/// its axis.
-/// Spheres of a rigid body share the drag that they have together (physics/bead_mobility.hpp).
+/// G_k of its own pores, those around held, W the correction for walls: of no-slip planes Faxen's along them and that
+/// of Bevan & Prieve (2000, Journal of Chemical Physics 113, 1228) towards them, one after the other; of the nearest
+/// slip or open one the image of a Stokeslet; nearer than 1.5 radii that of 1.5. In a round wall no less than
+/// Haberman's on its axis. Spheres of a rigid body share the drag that they have together (physics/bead_mobility.hpp).
 ///
 /// In a dense bed there is none. Pure; cost: a pass over S, and some 20 µs a sphere in open water.
-/// `imposed`: of each pore, whether its pressure is given; `matrix`: S. `body`: of each sphere, -1 for none; or no entries.
+/// `imposed`: of each pore, whether its pressure is given; `matrix`: S. `body`: of each sphere, -1 for none; or no
+/// entries. `still`: faces count among what stands around; not where water is driven through, which flows past them.
 std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices,
                                             const Throats& throats, const Conductances& conductances,
                                             const ForceMatrix& matrix, const std::vector<char>& imposed,
                                             const Container& container, double viscosity,
-                                            const std::vector<ResistanceBlock>& others, const std::vector<int>& body);
+                                            const std::vector<ResistanceBlock>& others, const std::vector<int>& body,
+                                            bool still);
+
+/// Whether nothing drives water through the container: no macroscopic gradient and, of two openings and more, neither a
+/// flux nor pressures that differ.
+bool is_still(const Container& container);
 
 /// Velocity of a sphere beside what stands around it, m/s. `of_periods`: how much faster an image moves than its
 /// sphere, one column for a period along each axis, m/s.

@@ -102,7 +102,10 @@ double force_balance_error(const BuiltNetwork& built, const Solution& solution,
   for (const FaceResult& face : faces) sum += face.force_pressure + face.force_viscous;
   const double largest_pressure =
       solution.pressures.size() > 0 ? solution.pressures.cwiseAbs().maxCoeff() : 0.0;
-  return force_balance_error(sum, largest_pressure, solution.container, driven.norm());
+  // drags in open water may be all there is
+  const double largest =
+      spheres > 0 ? solution.loads.topLeftCorner(3, spheres).colwise().norm().maxCoeff() : 0.0;
+  return force_balance_error(sum, largest_pressure, solution.container, std::max(driven.norm(), largest));
 }
 
 Balance balance_of(const BuiltNetwork& built, const Solution& solution, std::int64_t& solves) {

@@ -18,7 +18,8 @@ namespace pfv {
 ///     [ -(G + S_f^T B_f S_f)   -S^T     ] [p]   [-b]
 ///     [ -S                     M/dt + R ] [u] = [ f]
 ///
-/// R: of shear forces -R v, which join the velocities of neighbours. S_f, B_f: of the faces, which are eliminated.
+/// R: of forces -R v, shear and drag in open water, which join the velocities of neighbours. S_f, B_f: of the faces,
+/// which are eliminated.
 /// Quasi-definite: L D L^T exists in any order. Grains could be eliminated as well where there is no R, which
 /// leaves G + S^T B S; but that joins all pores around a sphere, and its factor has 1.4 times as many entries.
 struct ImplicitSystem {

@@ -52,6 +52,7 @@ struct KeptOperators {
   std::optional<SurfacePressure> surface_pressure;
   std::optional<std::vector<ShearPair>> shear_pairs;
   std::optional<std::vector<OpenWaterDrag>> open_water;
+  bool still_water = true;  ///< that it was made for
   std::optional<RigidBodies> bodies;                ///< as they stood when they were first asked for
   std::optional<SolidUnion> solid;
   std::array<std::optional<CellExtents>, 3> cell_extents;  ///< along each axis

@@ -23,8 +23,8 @@ void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNet
   if (!memory.restored.empty() && static_cast<int>(memory.restored.size()) != pores)
     throw InputError("the state that was set has " + std::to_string(memory.restored.size()) +
                      " pore pressures, and the network of this packing has " + std::to_string(pores) +
-                     " pores: restart with the packing, the container and the settings that the state was "
-                     "taken with, or set a state without pressures, from which the fluid begins at 0 Pa");
+                     " pores: take states right after a new network (Flow::rebuild before the step), restart "
+                     "with its packing, container and settings, or set a state without pressures, from which the fluid begins at 0 Pa");
   if (!memory.restored.empty())
     memory.pressures = Eigen::Map<const Eigen::VectorXd>(memory.restored.data(), pores);
   else if (before.network && memory.pressures.size() > 0 &&

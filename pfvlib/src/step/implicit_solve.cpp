@@ -110,7 +110,11 @@ Loads ImplicitSolve::follow(const StepTask& task, const ForcedMotion& forced, do
   solution.motion += forced.bodies ? forced.bodies->spread(gained) : gained;
   rates_of(built, solution.motion, *problem.team, solution.rates);
   spread_over_pores(growth, built.throats, solution.rates);
-  const Loads resisting = resisting_forces(built, problem.fluid.viscosity, solution.motion);
+  // K has no R of faces: for it they go on as they did
+  Motion for_grains = solution.motion;
+  const int moving_faces = problem.container.face_count();
+  for_grains.middleCols(spheres, moving_faces) = forced.start.middleCols(spheres, moving_faces);
+  const Loads resisting = resisting_forces(built, problem.fluid.viscosity, for_grains);
   return forced.bodies ? forced.all(pressures + resisting) : Loads(forced.held + pressures + resisting);
 }
 

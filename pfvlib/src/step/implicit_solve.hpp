@@ -10,7 +10,8 @@
 
 namespace pfv {
 
-/// Pressures and velocities of an implicit step, found together by one solve; -R u: shear forces, where there are any:
+/// Pressures and velocities of an implicit step, found together by one solve; -R u: shear forces and drag in open
+/// water, where there are any:
 ///
 ///     (M/(theta dt)) (u - w) = held + S p - R u,      G p = Q - S^T u
 ///
@@ -22,7 +23,7 @@ class ImplicitSolve {
   /// Anew where `yielding`, theta dt over masses, has changed. Throws SolverError.
   void factor(const StepTask& task, Matrix6Xd yielding);
   /// Completes the solution, whose imposed pressures are in it. `forced`: the motion to set out from and all
-  /// forces but those of the unknown pressures and of shear.
+  /// forces but those of the unknown pressures and of R.
   void solve(const StepTask& task, const ForcedMotion& forced, Solution& solution);
 
   /// Sets of pores that are still held at the reference pressure.

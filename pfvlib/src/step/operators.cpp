@@ -47,6 +47,7 @@ namespace {
 
 void find_open_water(BuiltNetwork& built, const Problem& problem) {
   built.operators.open_water.emplace();
+  built.operators.still_water = is_still(problem.container);
   if (!problem.options.open_water || problem.options.volume_rates == VolumeRates::geometric) return;
   std::vector<ResistanceBlock> of_shear;
   if (built.operators.shear_pairs) add_blocks(*built.operators.shear_pairs, problem.fluid.viscosity, of_shear);
@@ -56,7 +57,7 @@ void find_open_water(BuiltNetwork& built, const Problem& problem) {
   built.operators.open_water =
       open_water_drags(built.network, built.grains.spheres, built.vertices, built.throats, built.conductances,
                        *built.operators.force_matrix, imposed, problem.container, problem.fluid.viscosity, of_shear,
-                       built.grains.body);
+                       built.grains.body, built.operators.still_water);
 }
 
 }  // namespace
@@ -71,7 +72,7 @@ void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& co
     built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.grains.spheres, built.vertices);
     if (!built.grains.body.empty()) drop_pairs_within(*built.operators.shear_pairs, built.grains.body);
   }
-  if (!built.operators.open_water) {
+  if (!built.operators.open_water || built.operators.still_water != is_still(problem.container)) {
     find_open_water(built, problem);
     counts.open_water = static_cast<std::int64_t>(built.operators.open_water->size());
   }

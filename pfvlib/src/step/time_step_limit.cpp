@@ -44,7 +44,7 @@ Matrix6Xd inverse_roots(const BuiltNetwork& built, const Container& container, c
 /// similar to it and, but for those, symmetric.
 double largest_drag(const BuiltNetwork& built, const Problem& problem,
                     const Eigen::VectorXd& masses, const std::vector<RigidBody>& bodies, std::int64_t& solves) {
-  if (built.unknowns.count == 0 || built.grains.spheres.size() == 0) return 0.0;
+  if (built.grains.spheres.size() == 0) return 0.0;
   const std::optional<RigidBodies>& held = built.operators.bodies;
   const Matrix6Xd root = inverse_roots(built, problem.container, masses, bodies);
   Eigen::VectorXd opened;
