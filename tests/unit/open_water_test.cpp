@@ -118,6 +118,21 @@ TEST(OpenWater, BeadsOfABodyShareTheDragThatTheyHaveTogether) {
                 0.0, 1e-7) << r;
 }
 
+TEST(OpenWater, ABodyOfTwoHasTheDragOfADumbbellInATank) {
+  for (const auto& open : tops)
+    for (const Wall wall : {Wall::symmetry, Wall::no_slip}) {
+      pfv::PackingArrays pair = packing_of({{0.199, 0.19, 0.21, radius}, {0.201, 0.19, 0.21, radius}});
+      pair.bodies = Eigen::VectorXi::Zero(2);
+      pfv::Flow flow(tank(Eigen::Vector3d::Constant(0.4), open, wall), viscosity_one());
+      for (int axis = 0; axis < 3; ++axis) {
+        pair.velocities.setZero(3, 2);
+        pair.velocities.row(axis).setOnes();
+        const double force = -flow.evaluate(pair.view(), 1e-6).total.row(axis).sum();
+        EXPECT_NEAR(force / (6.0 * pi * radius) / (axis == 0 ? 1.290 : 1.450), 1.0, 0.08) << axis;
+      }
+    }
+}
+
 pfv::PackingArrays cloud(int count, double fraction, std::uint64_t seed) {
   const double r = std::cbrt(fraction / (4.0 / 3.0 * pi * count));
   return random_packing(count, 0.8 * r, 1.1 * r, seed);
