@@ -18,7 +18,7 @@ echo "unit tests under the address and undefined-behaviour sanitizers"
 cmake -S "$root" --preset sanitize > /dev/null
 cmake --build "$root/build-sanitize" --target unit_tests
 # leaks: in the long test, without the slowness of both
-ASAN_OPTIONS=detect_leaks=0 "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
+ASAN_OPTIONS=detect_leaks=0 in_two_halves "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
 
 if [ "${1:-}" = long ]; then
   export PFV_REBUILDS=2000

@@ -25,3 +25,16 @@ build_project() {
   cmake -S "$root" -B "$root/build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${unity[@]}" > /dev/null
   cmake --build "$root/build" ${1:+--target "$@"}
 }
+
+# Runs a gtest program with its arguments as two processes that share its tests.
+in_two_halves() {
+  local half processes=() failed=0
+  for half in 0 1; do
+    GTEST_TOTAL_SHARDS=2 GTEST_SHARD_INDEX=$half "$@" &
+    processes+=($!)
+  done
+  for half in "${processes[@]}"; do
+    wait "$half" || failed=1
+  done
+  return "$failed"
+}
