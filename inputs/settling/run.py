@@ -36,6 +36,7 @@ ONES = {"in the middle": (200, 200, (0.5, 0.5, 0.5), "symmetry", "pressure 0"),
         "no-slip walls": (300, 300, (0.5, 0.3, 0.5), "no_slip", "pressure 0")}
 RICHARDSON_ZAKI = 4.65
 MOST = 1.4  # of it: dilute clouds stir themselves
+PERMEABILITY_ERROR = 0.1  # doc/accuracy.md
 
 
 def fixed_bed(fraction):
@@ -104,9 +105,9 @@ def work(words):
     for found in clouds:
         print(f"  cloud {found['fraction']:.3g}: fall {found['ratio']:.3f} of Stokes, Richardson & Zaki {found['wanted']:.3f}; "
               f"networks {found['networks']}, CPU {found['cpu']:.0f} s")
-        least = fixed_bed(found["fraction"])
+        least = (1.0 - PERMEABILITY_ERROR) * fixed_bed(found["fraction"])
         rows.append((f"cloud {found['fraction']:.3g}: fall / Richardson & Zaki", found["ratio"] / found["wanted"],
-                     f"{least / found['wanted']:.2f} (fixed bed) to {MOST:g}",
+                     f"{least / found['wanted']:.2f} (fixed bed, less 10 %) to {MOST:g}",
                      least <= found["ratio"] <= MOST * found["wanted"]))
     every = [*ones.values(), *clouds]
     for what, key in (("mass error", "mass"), ("force-balance error", "force")):
