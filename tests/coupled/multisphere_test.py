@@ -131,7 +131,8 @@ class Multisphere(CoupledTest):
         rows = read_thermo(self.liggghts(self.head(speed=1e-3, step=1e-6) + VISCOUS + THERMO + "run 0\n"))
         limit = rows[-1]["flow[6]"]
         self.assertLess(speed_after(0.98 * limit), 1e-5)
-        self.assertGreater(speed_after(1.1 * limit), 1e-2)
+        # no grain is left where it was thrown out: LIGGGHTS' largest of none is -1e20
+        self.assertGreater(abs(speed_after(1.1 * limit)), 1e-2)
 
     def test_a_body_that_is_held_has_no_limit(self):
         script = self.head() + VISCOUS + "fix hold all freeze\n" + THERMO + "run 0\n"
