@@ -22,8 +22,9 @@ KEYS = {
     "WIDTH": (float, 8.0, "period along y, in radii"),
     "RISE": (float, 1.5, "height of the column over its foot, about"),
     "END": (float, 0.3, "duration of the runs in the fluid, s"),
-    "TOPS": (str, "low,high,closed,no_slip,extent", "what is above, of these"),
+    "TOPS": (str, "low,high,closed", "what is above, of low, high, closed, no_slip, extent"),
     "SHEAR": (str, "yes", "shear_viscous: yes or no"),
+    "SAMPLES": (int, 3, "columns whose means are compared, from SEED on"),
     "SEED": scene.SEED,
     "OUT": scene.OUT,
 }
@@ -38,6 +39,17 @@ TOPS = {"low": "plane {low:.17g} symmetry pressure 0", "high": "plane {high:.17g
 
 
 def run(name, settings, geometry, top):
+    """Means over the samples; the curves are those of the first."""
+    samples = [sample(name, {**settings, "SEED": settings["SEED"] + k,
+                             "OUT": settings["OUT"] + (f"_{k + 1}" if k else "")}, geometry, top)
+               for k in range(settings["SAMPLES"])]
+    means = {key: float(np.mean([found[key] for found in samples])) for key in ("run_out", "moved", "half")}
+    worst = {key: max(found[key] for found in samples) for key in ("mass", "force")}
+    sums = {key: sum(found[key] for found in samples) for key in ("cpu", "networks")}
+    return {"name": name, **means, **worst, **sums, "samples": samples}
+
+
+def sample(name, settings, geometry, top):
     out = f"{settings['OUT']}_{name}"
     wet = top is not None
     end = settings["END"] if wet else 0.25 * settings["END"]
@@ -69,8 +81,8 @@ def draw(runs, settings):
 
 def work(words):
     settings = scene.parse(words, KEYS)
-    if settings["N"] < 100 or min(settings["VISCOSITY"], settings["END"], settings["RISE"]) <= 0 or settings["WIDTH"] < 6:
-        raise scene.BadSetting("N must be at least 100, WIDTH 6; VISCOSITY, END and RISE above 0")
+    if settings["N"] < 100 or min(settings["VISCOSITY"], settings["END"], settings["RISE"]) <= 0 or settings["WIDTH"] < 6 or settings["SAMPLES"] < 1:
+        raise scene.BadSetting("N must be at least 100, WIDTH 6, SAMPLES 1; VISCOSITY, END and RISE above 0")
     tops = settings["TOPS"].split(",")
     if not set(tops) <= set(TOPS) or settings["SHEAR"] not in ("yes", "no"):
         raise scene.BadSetting(f"TOPS are {', '.join(TOPS)}, with commas between them; SHEAR is yes or no")
@@ -87,9 +99,12 @@ def work(words):
               f"{found['half']:.4f} s; networks {found['networks']}, CPU {found['cpu']:.0f} s")
     rows, first = [], runs[1]
     for found in runs[2:]:
-        for what, key in (("mean way", "moved"), ("time of half of it", "half")):
-            beside = found[key] / first[key] - 1.0
-            rows.append((f"{what}, top {found['name']} / {first['name']} - 1", beside, "within 0.05", abs(beside) <= 0.05))
+        for what, key in (("run-out", "run_out"), ("mean way", "moved"), ("time of half of it", "half")):
+            beside = [one[key] / other[key] - 1.0 for one, other in zip(found["samples"], first["samples"])]
+            error = float(np.std(beside, ddof=1) / math.sqrt(len(beside))) if len(beside) > 1 else 0.0
+            mean = float(np.mean(beside))
+            rows.append((f"{what}, top {found['name']} / {first['name']} - 1", mean, f"0, +- 0.05 + 2 x {error:.3f}",
+                         abs(mean) <= 0.05 + 2.0 * error))
     draw(runs, settings)
     return scene.summary(SCENE, settings["OUT"], {**settings, **geometry, "runs": runs}, rows)
 
