@@ -3,7 +3,7 @@
 import math
 import unittest
 
-from coupled import CoupledTest, read_dump
+from coupled import CONTACT, CoupledTest, read_dump
 
 R = 0.01
 VOLUME = 2 * 4 / 3 * math.pi * R**3 - 2 * math.pi * (R / 2)**2 * (3 * R - R / 2) / 3  # of the union of a pair, m3
@@ -18,13 +18,7 @@ processors * 1 1
 {start}
 neighbor 0.002 bin
 neigh_modify delay 0
-fix m1 all property/global youngsModulus peratomtype 5.e6
-fix m2 all property/global poissonsRatio peratomtype 0.45
-fix m3 all property/global coefficientRestitution peratomtypepair 1 0.5
-fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
-pair_style gran model hertz tangential history
-pair_coeff * *
-timestep {step}
+""" + CONTACT + """timestep {step}
 """
 CREATE = """region all block -0.05 0.15 -0.05 0.15 -0.05 0.15 units box
 create_box 1 all"""

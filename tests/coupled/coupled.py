@@ -68,6 +68,14 @@ def faces(**boundaries):
     return " ".join(words)
 
 
+# grains of 5 MPa, as fix multisphere's examples have them
+CONTACT = """fix m1 all property/global youngsModulus peratomtype 5.e6
+fix m2 all property/global poissonsRatio peratomtype 0.45
+fix m3 all property/global coefficientRestitution peratomtypepair 1 0.5
+fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
+pair_style gran model hertz tangential history
+pair_coeff * *
+"""
 WATER = "viscosity 0.01 " + faces(zlo="pressure 10", zhi="pressure 0")
 FLOW = WATER + " couple_every 1"
 DUMP = ("dump d all custom 1 {0} id x y z radius vx vy vz "

@@ -3,7 +3,7 @@
 import math
 import unittest
 
-from coupled import CoupledTest, read_dump, read_thermo
+from coupled import CONTACT, CoupledTest, read_dump, read_thermo
 
 HEAD = """units si
 atom_style granular
@@ -15,13 +15,7 @@ region all block -0.05 0.15 -0.05 0.15 -0.05 0.15 units box
 create_box 1 all
 neighbor 0.002 bin
 neigh_modify delay 0
-fix m1 all property/global youngsModulus peratomtype 5.e6
-fix m2 all property/global poissonsRatio peratomtype 0.45
-fix m3 all property/global coefficientRestitution peratomtypepair 1 0.5
-fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
-pair_style gran model hertz tangential history
-pair_coeff * *
-region place block 0.03 0.07 0.03 0.07 0.03 0.07 units box
+""" + CONTACT + """region place block 0.03 0.07 0.03 0.07 0.03 0.07 units box
 fix shape all particletemplate/multisphere 15485863 atom_type 1 density constant 1000 &
     nspheres {count} ntry 1000000 spheres file body.txt scale 1.0 type 1
 fix sizes all particledistribution/discrete 15485867 1 shape 1.0

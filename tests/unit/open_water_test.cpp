@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -346,6 +347,26 @@ TEST(OpenWater, FallsAsFastInLongStepsAsInShortOnes) {
     EXPECT_NEAR(v[0] / run.ends()[0], 1.0, 0.06) << static_cast<int>(coupling);
     EXPECT_NEAR(v[2] / run.ends()[2], 1.0, 0.06) << static_cast<int>(coupling);
   }
+}
+
+// What is kept from step to step forgets the faces where water begins to be driven through, on the same network.
+TEST(OpenWater, LimitsAndFactorsFollowWaterThatBeginsToFlow) {
+  const std::vector<Face> ends{Face::zlo, Face::zhi};
+  pfv::Box driven = tank({0.1, 0.1, 0.1}, ends, Wall::symmetry);
+  driven[Face::zlo].boundary = pfv::Boundary::pressure(1e-3);
+  Falling run(ends);
+  run.after(Coupling::implicit, run.time(), 1);
+  EXPECT_LT(run.flow.time_step_limit(run.mass, run.pistons), 3.0 * run.time());
+  run.flow.set_box(driven);
+  run.after(Coupling::implicit, run.time(), 1);
+  EXPECT_EQ(run.flow.report().counts.triangulate, 1);
+  EXPECT_EQ(run.flow.time_step_limit(run.mass, run.pistons), std::numeric_limits<double>::infinity());
+  run.packing.velocities.setZero();
+  Falling fresh(ends);
+  fresh.flow.set_box(driven);
+  const Eigen::Vector3d found = run.after(Coupling::implicit, run.time(), 1);
+  const Eigen::Vector3d wanted = fresh.after(Coupling::implicit, run.time(), 1);
+  EXPECT_LT((found - wanted).norm(), 1e-9 * wanted.norm());
 }
 
 TEST(OpenWater, ItsLimitIsThatOfStokesDrag) {

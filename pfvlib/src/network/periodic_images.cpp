@@ -217,6 +217,11 @@ std::array<int, 3> periods_within(const Spheres& spheres, double margin) {
 
 }  // namespace
 
+Lattice::Shift periods_of(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices, Vertex vertex) {
+  return spheres.lattice().nearest(vertices.centres.col(vertex) -
+                                   spheres.centres.col(network.vertex_sphere[vertex]));
+}
+
 Images replicate(const Spheres& spheres, double margin) {
   Images images;
   images.margin = margin;

@@ -17,6 +17,10 @@ struct Images {
 
 Images replicate(const Spheres& spheres, double margin);
 
+/// How many periods a vertex of the network, which may be an image, stands away from its sphere. `vertices`: what the
+/// vertices stand for.
+Lattice::Shift periods_of(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices, Vertex vertex);
+
 /// Cuts one period out of the network of all images: the pores whose centre is in the cell, their
 /// cells, and each throat once, with the offset of its second pore's image. Pores are matched by
 /// place, not by their cells, since the images of a cospherical set may be triangulated in different

@@ -27,7 +27,7 @@ namespace {
 
 Vector3d nearest_image(const Spheres& spheres, const Vector3d& apart) {
   const Lattice lattice = spheres.lattice();
-  return apart - lattice.displacement(lattice.periods(apart, [](double x) { return std::round(x); }));
+  return apart - lattice.displacement(lattice.nearest(apart));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "physics/open_water.hpp"
 
 #include "geometry/pi.hpp"
+#include "network/periodic_images.hpp"
 #include "network/pore_boundaries.hpp"
 #include "physics/bead_mobility.hpp"
 #include "physics/isotropic_drag.hpp"
@@ -185,7 +186,7 @@ class Surroundings {
       const double part = std::min(1.0, 2.0 * spheres_.radii[sphere] / spheres_.radii[network_.vertex_sphere[own]]);
       seen += part * weight;
       view.of_small += (1.0 - part) * weight;
-      view.periods += weight * (periods_of(other) - periods_of(own));
+      view.periods += part * weight * (periods_of(other) - periods_of(own));
     } else {
       return;
     }
@@ -197,12 +198,8 @@ class Surroundings {
   }
 
   Vector3d periods_of(Vertex vertex) const {
-    Vector3d periods = Vector3d::Zero();
-    const Lattice::Shift shift = spheres_.lattice().periods(
-        vertices_.centres.col(vertex) - spheres_.centres.col(network_.vertex_sphere[vertex]),
-        [](double x) { return std::round(x); });
-    for (int axis = 0; axis < 3; ++axis) periods[axis] = shift[axis];
-    return periods;
+    const Lattice::Shift shift = pfv::periods_of(network_, spheres_, vertices_, vertex);
+    return {static_cast<double>(shift[0]), static_cast<double>(shift[1]), static_cast<double>(shift[2])};
   }
 
   /// What a face carries the water along by: all of its velocity, a slip wall only across.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/shear_forces.hpp"
 
+#include "network/periodic_images.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -49,18 +51,6 @@ CutFacet facet_of(const PoreNetwork& network, const Throats& throats, int f, int
     facet.to = network.cell_centres.col(to);
   }
   return facet;
-}
-
-/// How many periods a vertex stands away from its sphere.
-std::array<int, 3> periods_of(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices,
-                              Vertex vertex) {
-  std::array<int, 3> periods{0, 0, 0};
-  for (int axis = 0; axis < 3; ++axis)
-    if (spheres.periodic[axis])
-      periods[axis] = static_cast<int>(std::lround(
-          (vertices.centres(axis, vertex) - spheres.centres(axis, network.vertex_sphere[vertex])) /
-          spheres.edges[axis]));
-  return periods;
 }
 
 /// The triangle that the line between the facet's two cell centres spans with the pair's axis, positive

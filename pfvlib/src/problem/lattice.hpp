@@ -32,6 +32,10 @@ struct Lattice {
     }
     return shift;
   }
+  /// Those that bring a way nearest to zero.
+  Shift nearest(const Eigen::Vector3d& way) const {
+    return periods(way, [](double x) { return std::round(x); });
+  }
 };
 
 }  // namespace pfv

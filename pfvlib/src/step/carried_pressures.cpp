@@ -50,7 +50,7 @@ double raised_by_wrapping(const BuiltNetwork& old, int before, const BuiltNetwor
   const Lattice lattice = now.grains.spheres.lattice();
   const Eigen::Vector3d way = now.network.origin + now.network.cell_centres.col(after) - old.network.origin -
                               old.network.cell_centres.col(before);
-  return gradient.dot(lattice.displacement(lattice.periods(way, [](double x) { return std::round(x); })));
+  return gradient.dot(lattice.displacement(lattice.nearest(way)));
 }
 
 }  // namespace

@@ -64,7 +64,8 @@ void ImplicitSolve::factor(const StepTask& task, Matrix6Xd yielding) {
   const int spheres = built.grains.spheres.size();
   if (!problem.options.torques) yielding.bottomLeftCorner(3, spheres).setZero();
   if (!factor_) factor_.emplace();
-  const bool kept = factor_->yielding.cols() == yielding.cols() && factor_->yielding == yielding;
+  const bool kept = factor_->yielding.cols() == yielding.cols() && factor_->yielding == yielding &&
+                    factor_->still_water == built.operators.still_water;
   if (factor_->solver && kept) return;
   forget_factor();  // whatever goes wrong from here on
   const SymmetricMatrix old = std::move(factor_->system.matrix);
@@ -90,6 +91,7 @@ void ImplicitSolve::factor(const StepTask& task, Matrix6Xd yielding) {
   }
   ++work.counts.factor;
   factor_->yielding = std::move(yielding);
+  factor_->still_water = built.operators.still_water;
   factor_->loses_digits.reset();
 }
 

@@ -15,12 +15,12 @@ namespace pfv {
 ///
 ///     (M/(theta dt)) (u - w) = held + S p - R u,      G p = Q - S^T u
 ///
-/// Keeps the factor until the network, a mass or theta dt changes.
+/// Keeps the factor until the network, a mass, theta dt or R changes.
 class ImplicitSolve {
  public:
   void forget_network() { factor_.reset(); }
   void forget_factor();
-  /// Anew where `yielding`, theta dt over masses, has changed. Throws SolverError.
+  /// Anew where `yielding`, theta dt over masses, or R has changed. Throws SolverError.
   void factor(const StepTask& task, Matrix6Xd yielding);
   /// Completes the solution, whose imposed pressures are in it. `forced`: the motion to set out from and all
   /// forces but those of the unknown pressures and of R.
@@ -37,6 +37,7 @@ class ImplicitSolve {
     std::unique_ptr<QuasiDefiniteSolver> solver;
     std::optional<bool> loses_digits;  ///< as of KeptSystem
     Matrix6Xd yielding;                ///< that is in the factor; no columns: none is
+    bool still_water = true;           ///< whose R is (KeptOperators)
     Eigen::VectorXd right_side, unknowns;  ///< of the last solve: pressures, then velocities less those at the start
   };
   std::optional<Factor> factor_;

@@ -135,7 +135,7 @@ bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) 
                             grains.spheres.centres.col(i);
     if (!problem.container.tilt.isZero(0.0)) {
       const Lattice lattice = grains.spheres.lattice();
-      moved -= lattice.displacement(lattice.periods(moved, [](double x) { return std::round(x); }));
+      moved -= lattice.displacement(lattice.nearest(moved));
     }
     for (int axis = 0; axis < 3; ++axis)  // the host may have wrapped it
       if (problem.container.periodic[axis])

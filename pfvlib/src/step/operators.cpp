@@ -125,8 +125,9 @@ Loads shear_forces_of(const BuiltNetwork& built, double viscosity, const Motion&
 }
 
 void add_open_water_forces(const BuiltNetwork& built, const Motion& motion, Loads& loads) {
-  if (has_open_water(built))
-    add_open_water_forces(*built.operators.open_water, motion, velocities_of_periods(built, motion), loads);
+  const auto& drags = built.operators.open_water;
+  if (drags && !drags->empty())
+    add_open_water_forces(*drags, motion, velocities_of_periods(built, motion), loads);
 }
 
 Loads resisting_forces(const BuiltNetwork& built, double viscosity, const Motion& motion) {
@@ -140,10 +141,6 @@ std::vector<ResistanceBlock> resistance_blocks(const BuiltNetwork& built, double
   if (built.operators.shear_pairs) add_blocks(*built.operators.shear_pairs, viscosity, blocks);
   if (built.operators.open_water) add_blocks(*built.operators.open_water, blocks);
   return blocks;
-}
-
-bool has_open_water(const BuiltNetwork& built) {
-  return built.operators.open_water && !built.operators.open_water->empty();
 }
 
 void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates) {

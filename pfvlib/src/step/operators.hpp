@@ -30,8 +30,6 @@ void add_open_water_forces(const BuiltNetwork& built, const Motion& motion, Load
 Loads resisting_forces(const BuiltNetwork& built, double viscosity, const Motion& motion);
 /// R of the spheres.
 std::vector<ResistanceBlock> resistance_blocks(const BuiltNetwork& built, double viscosity);
-/// Whether any sphere stands in open water; not before the forces' matrices are made.
-bool has_open_water(const BuiltNetwork& built);
 
 /// dV/dt of each pore, m³/s, from the network as it was built.
 void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates);

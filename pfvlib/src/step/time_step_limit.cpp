@@ -77,8 +77,10 @@ double TimeStepLimit::of(BuiltNetwork& built, const Problem& problem, Eigen::Ind
   for (int f = 0; f < faces; ++f) all[spheres + f] = piston_of(pistons, f).mass;
   if (!(all.head(spheres + faces).array() > 0.0).all())
     throw InputError("time step limit: a mass is not a positive number; give kg");
-  if (limit_ && all.size() == masses_.size() && all == masses_) return *limit_;
+  const bool still = is_still(problem.container);
+  if (limit_ && all.size() == masses_.size() && all == masses_ && still == still_water_) return *limit_;
   limit_.reset();
+  still_water_ = still;
   make_force_matrices(built, problem, work.counts);
   make_volume_rates(built, problem, work.counts);
   take_bodies(built, problem, bodies);

@@ -11,7 +11,7 @@
 
 namespace pfv {
 
-/// The limit of the explicit step, dt < 2 / lambda_max(M^-1 S G^-1 S^T), kept while factor and masses stay.
+/// The limit of the explicit step, dt < 2 / lambda_max(M^-1 S G^-1 S^T), kept while factor, masses and R stay.
 class TimeStepLimit {
  public:
   /// s; infinite where nothing resists. `masses` of the packing's spheres, kg. Cost: some 20 to 40 solves,
@@ -23,6 +23,7 @@ class TimeStepLimit {
 
  private:
   std::optional<double> limit_;
+  bool still_water_ = true;  ///< whose R is in it (KeptOperators)
   Eigen::VectorXd masses_;  ///< that it belongs to: of the spheres and the faces, then those and the inertias of bodies
 };
 
