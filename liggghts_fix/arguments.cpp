@@ -259,6 +259,13 @@ void parse_sensors(Words& words, PfvSettings& settings) {
   settings.sensors = sensors;
 }
 
+void parse_history(Words& words, PfvSettings& settings) {
+  PfvHistoryOutput history;
+  history.every = words.whole_number("the number of steps", demands::count);
+  history.path = words.word("the file's name");
+  settings.history = history;
+}
+
 void parse_culprits(Words& words, PfvSettings& settings) { settings.culprits = words.word("the file's name"); }
 
 // --------------------------------------------------------------------------------------- keywords
@@ -280,6 +287,7 @@ constexpr Keyword keywords[]{{"container", false, parse_container},
                              {"profile", false, parse_profile},
                              {"flux_profile", false, parse_flux_profile},
                              {"sensors", false, parse_sensors},
+                             {"history", false, parse_history},
                              {"culprits", false, parse_culprits}};
 
 std::string settings_with(bool pfv::Hosts::*host) {

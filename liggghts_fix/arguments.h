@@ -54,6 +54,11 @@ struct PfvSensorOutput {
   std::string path;
 };
 
+struct PfvHistoryOutput {
+  int every;
+  std::string path;
+};
+
 struct PfvFieldOutput {
   int every;
   std::string path;  ///< ends in .pvd
@@ -74,6 +79,7 @@ struct PfvSettings : pfv::Settings {
   std::optional<PfvFieldOutput> fields;
   std::optional<PfvProfileOutput> profile, flux_profile;
   std::optional<PfvSensorOutput> sensors;
+  std::optional<PfvHistoryOutput> history;
   std::optional<std::string> culprits;  ///< file for what an error is about
 };
 

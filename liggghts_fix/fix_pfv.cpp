@@ -355,6 +355,8 @@ void FixPfv::after_flow_call() {
   on_root([&] {
     report_.reset();
     files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep);
+    if (files_->history_due(update->ntimestep))
+      files_->write_history(history_row(*flow_, report(), update->ntimestep, taken_));
   });
   grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{},
                   comm->me == 0 && plan_ ? &plan_->interval().held() : nullptr,
@@ -410,6 +412,7 @@ void FixPfv::write_restart(FILE* file) {
   record.elapsed = since_.time;
   record.last_positions = since_.face_positions;
   record.cell_rates = since_.cell_rates;
+  record.taken = taken_;
   on_root([&] {
     if (flow_) {
       place_faces(container_);
@@ -440,6 +443,7 @@ void FixPfv::restart(char* bytes) {
     since_.time = record.elapsed;
     since_.face_positions = record.last_positions;
     since_.cell_rates = record.cell_rates;
+    taken_ = record.taken;
     if (!files_) return;  // not rank 0
     since_.grains = std::move(record.last_grains);
     restored_ = std::move(record.flow);

@@ -142,9 +142,7 @@ class FixPfv : public Fix {
     PfvCellRates cell_rates{};               // of a periodic cell, over the interval that ended with it
     PfvSnapshot grains;                      // at it; rank 0
   } since_;
-  struct Taken {
-    std::int64_t steps = 0, solves = 0;  // of all runs
-  } taken_;
+  PfvTaken taken_;
   bool continued_ = false;  // from a restart file, and no run since
   pfv::NextSolve next_;  // of `couple_every auto`
 

@@ -10,8 +10,9 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 5.0;
-constexpr double with_cell_rates = 6.0;  // of a periodic cell that changes
+constexpr double format_number = 7.0;
+constexpr double without_counts = 6.0;      // of steps and solves
+constexpr double without_cell_rates = 5.0;  // nor these: of a periodic cell
 
 class Reader {
  public:
@@ -39,8 +40,7 @@ class Reader {
 }  // namespace
 
 std::vector<double> pack(const PfvRestartRecord& record) {
-  const bool stretches = record.cell_rates != PfvCellRates{};
-  std::vector<double> data{stretches ? with_cell_rates : format_number,
+  std::vector<double> data{format_number,
                            static_cast<double>(record.step),
                            record.flow.time,
                            record.flow.strain,
@@ -52,7 +52,7 @@ std::vector<double> pack(const PfvRestartRecord& record) {
   };
   data.push_back(static_cast<double>(record.last_positions.size()));
   append(record.last_positions);
-  if (stretches) append(record.cell_rates);
+  append(record.cell_rates);
   append(std::array<double, 3>{record.flow.volume_debt, record.flow.fluid_at_start,
                                record.flow.fluid_came_in});
   data.push_back(static_cast<double>(record.flow.pore_pressures.size()));
@@ -65,17 +65,18 @@ std::vector<double> pack(const PfvRestartRecord& record) {
     data.push_back(static_cast<double>(one.step));
     data.push_back(one.time);
   }
+  append(std::array<std::int64_t, 2>{record.taken.steps, record.taken.solves});
   return data;
 }
 
 PfvRestartRecord unpack(const char* bytes) {
   Reader reader(bytes);
   const double found = reader.next();
-  if (found != format_number && found != with_cell_rates)
+  if (found != format_number && found != without_counts && found != without_cell_rates)
     throw pfv::InputError("the restart file holds this fix in form " +
                           std::to_string(static_cast<int>(found)) + " of another version, this one reads the "
-                          "forms " + std::to_string(static_cast<int>(format_number)) + " and " +
-                          std::to_string(static_cast<int>(with_cell_rates)) +
+                          "forms " + std::to_string(static_cast<int>(without_cell_rates)) + " to " +
+                          std::to_string(static_cast<int>(format_number)) +
                           "; give the fix another ID to start the flow anew");
   PfvRestartRecord record;
   record.step = static_cast<std::int64_t>(reader.next());
@@ -85,7 +86,7 @@ PfvRestartRecord unpack(const char* bytes) {
   record.steps_since_flow = static_cast<int>(reader.next());
   record.elapsed = reader.next();
   record.last_positions = reader.list<double>(reader.count());
-  if (found == with_cell_rates)
+  if (found != without_cell_rates)
     for (double& rate : record.cell_rates) rate = reader.next();
   record.flow.volume_debt = reader.next();
   record.flow.fluid_at_start = reader.next();
@@ -98,6 +99,10 @@ PfvRestartRecord unpack(const char* bytes) {
   for (PfvWrittenStep& one : record.written) {
     one.step = static_cast<std::int64_t>(reader.next());
     one.time = reader.next();
+  }
+  if (found == format_number) {
+    record.taken.steps = static_cast<std::int64_t>(reader.next());
+    record.taken.solves = static_cast<std::int64_t>(reader.next());
   }
   return record;
 }

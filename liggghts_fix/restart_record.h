@@ -20,6 +20,7 @@ struct PfvRestartRecord {
   std::vector<double> last_positions;  ///< of the faces
   PfvCellRates cell_rates{};           ///< m/s, over the last interval
   PfvSnapshot last_grains;
+  PfvTaken taken;
   std::vector<PfvWrittenStep> written;
 };
 

@@ -5,6 +5,7 @@
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iomanip>
@@ -36,26 +37,33 @@ std::string header_of(const PfvSensorOutput& sensors) {
   return header.str();
 }
 
-/// The rows of a file that an earlier run has written up to `time`; none where the file is
+/// The value of the column `time` in a row.
+double time_in(const std::string& row, const std::string& header) {
+  const auto columns_before = std::count(header.begin(), header.begin() + header.find("time"), ',');
+  std::size_t begin = 0;
+  for (int column = 0; column < columns_before; ++column) begin = row.find(',', begin) + 1;
+  return std::strtod(row.c_str() + begin, nullptr);
+}
+
+/// The rows of a file that an earlier run has written up to `time`, whole ones; none where the file is
 /// absent or of another kind.
 std::string rows_until(const std::string& path, const std::string& header, double time) {
   std::ifstream file(path);
   std::string line, rows;
   if (!std::getline(file, line) || line != header) return rows;
-  while (std::getline(file, line) && std::strtod(line.c_str(), nullptr) <= time)
+  while (std::getline(file, line) && !file.eof() && time_in(line, header) <= time)
     rows += line + '\n';
   return rows;
 }
 
 /// The time, then the quantity on each plane.
 template <class Quantity>
-std::vector<double> plane_row(const pfv::FlowModel& flow, const PfvProfileOutput& profile,
-                              const Quantity& quantity) {
+PfvNamedRow plane_row(const pfv::FlowModel& flow, const PfvProfileOutput& profile, const Quantity& quantity) {
   const pfv::Container& box = flow.container();
   const double lower = box.lower[profile.axis], upper = box.upper[profile.axis];
-  std::vector<double> row{flow.time()};
+  PfvNamedRow row{header_of(profile), {flow.time()}};
   for (int plane = 0; plane < profile.planes; ++plane)
-    row.push_back(quantity(lower + relative_position(profile, plane) * (upper - lower)));
+    row.values.push_back(quantity(lower + relative_position(profile, plane) * (upper - lower)));
   return row;
 }
 
@@ -73,8 +81,7 @@ bool PfvSchedule::due(std::int64_t step) {
   return due;
 }
 
-PfvRowFile::PfvRowFile(std::string path, std::string header, int every)
-    : path_(std::move(path)), header_(std::move(header)), schedule_(every) {
+PfvRowFile::PfvRowFile(std::string path, int every) : path_(std::move(path)), schedule_(every) {
   pfv::require_folder_of(path_);
 }
 
@@ -83,16 +90,19 @@ void PfvRowFile::resume(std::int64_t step, double time) {
   resumed_time_ = time;
 }
 
-void PfvRowFile::write_row(const std::vector<double>& values) {
-  if (!file_.is_open()) {
-    const std::string rows =
-        resumed_time_ ? rows_until(path_, header_, *resumed_time_) : std::string();
-    file_.open(path_, std::ios::trunc);
-    file_ << header_ << '\n' << rows << std::setprecision(12);
-  }
+/// The rows that stay are in the file at each moment, also of a run that is stopped here.
+void PfvRowFile::begin(const std::string& header) {
+  pfv::write_text(path_, header + '\n' + (resumed_time_ ? rows_until(path_, header, *resumed_time_) : ""));
+  file_.open(path_, std::ios::app);
+  file_ << std::setprecision(12);
+}
+
+void PfvRowFile::write_row(const PfvNamedRow& row) {
+  if (!file_.is_open()) begin(row.names);
   const char* separator = "";
-  for (const double value : values) {
-    file_ << separator << value;
+  for (const double value : row.values) {
+    file_ << separator;
+    if (!std::isnan(value)) file_ << value;
     separator = ",";
   }
   file_ << '\n' << std::flush;
@@ -107,18 +117,17 @@ PfvResultFiles::PfvResultFiles(const PfvSettings& settings)
     pfv::require_folder_of(fields_->path);
     field_schedule_ = PfvSchedule(fields_->every);
   }
-  if (profile_) profile_file_.emplace(profile_->path, header_of(*profile_), profile_->every);
-  if (flux_profile_)
-    flux_file_.emplace(flux_profile_->path, header_of(*flux_profile_), flux_profile_->every);
-  if (sensors_) sensor_file_.emplace(sensors_->path, header_of(*sensors_), sensors_->every);
+  if (profile_) profile_file_.emplace(profile_->path, profile_->every);
+  if (flux_profile_) flux_file_.emplace(flux_profile_->path, flux_profile_->every);
+  if (sensors_) sensor_file_.emplace(sensors_->path, sensors_->every);
+  if (settings.history) history_file_.emplace(settings.history->path, settings.history->every);
 }
 
 void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWrittenStep> written) {
   written_ = std::move(written);
   field_schedule_.resume_after(step);
-  if (profile_file_) profile_file_->resume(step, time);
-  if (flux_file_) flux_file_->resume(step, time);
-  if (sensor_file_) sensor_file_->resume(step, time);
+  for (auto* file : {&profile_file_, &flux_file_, &sensor_file_, &history_file_})
+    if (*file) (*file)->resume(step, time);
 }
 
 void PfvResultFiles::write(const pfv::FlowModel& flow, const pfv::Packing& packing,
@@ -173,14 +182,14 @@ pfv::SphereFields PfvResultFiles::sphere_fields(const pfv::FlowModel& flow,
   return fields;
 }
 
-std::vector<double> PfvResultFiles::profile_row(const pfv::FlowModel& flow) const {
+PfvNamedRow PfvResultFiles::profile_row(const pfv::FlowModel& flow) const {
   return plane_row(flow, *profile_, [&](double place) {
     return flow.plane_pressure(profile_->axis, place);
   });
 }
 
 /// Only the model with pores comes here.
-std::vector<double> PfvResultFiles::flux_row(const pfv::FlowModel& flow) const {
+PfvNamedRow PfvResultFiles::flux_row(const pfv::FlowModel& flow) const {
   const auto& pores = dynamic_cast<const pfv::Flow&>(flow);
   return plane_row(flow, *flux_profile_, [&](double place) {
     return pores.plane_flux(flux_profile_->axis, place);
@@ -208,11 +217,11 @@ Eigen::Vector3d moved_inside(const pfv::Container& container, Eigen::Vector3d pl
 }  // namespace
 
 /// A sensor outside the flow box, which may shrink below it, reads the pressure of the nearest place.
-std::vector<double> PfvResultFiles::sensor_row(const pfv::FlowModel& flow) const {
+PfvNamedRow PfvResultFiles::sensor_row(const pfv::FlowModel& flow) const {
   const pfv::Container& box = flow.container();
-  std::vector<double> row{flow.time()};
+  PfvNamedRow row{header_of(*sensors_), {flow.time()}};
   for (const Eigen::Vector3d& place : sensors_->places)
-    row.push_back(flow.pressure_at(moved_inside(box, place)));
+    row.values.push_back(flow.pressure_at(moved_inside(box, place)));
   return row;
 }
 

@@ -4,6 +4,7 @@
 #define LMP_PFV_RESULT_FILES_H
 
 #include "arguments.h"
+#include "history.h"
 
 #include "pfv/flow_model.hpp"
 #include "pfv/io.hpp"
@@ -12,6 +13,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -38,16 +40,18 @@ struct PfvWrittenStep {
 class PfvRowFile {
  public:
   /// Throws pfv::InputError where the folder is missing or cannot be written.
-  PfvRowFile(std::string path, std::string header, int every);
+  PfvRowFile(std::string path, int every);
 
   /// Keeps the rows that the run before has written up to the flow time `time`.
   void resume(std::int64_t step, double time);
   bool due(std::int64_t step) { return schedule_.due(step); }
-  /// Throws pfv::FileError.
-  void write_row(const std::vector<double>& values);
+  /// The names are those of every row; NaN leaves a field empty. Throws pfv::FileError.
+  void write_row(const PfvNamedRow& row);
 
  private:
-  std::string path_, header_;
+  void begin(const std::string& header);
+
+  std::string path_;
   PfvSchedule schedule_;
   std::optional<double> resumed_time_;
   std::ofstream file_;
@@ -67,13 +71,15 @@ class PfvResultFiles {
   /// `unwrapped`: positions without the wrapping of periodic axes, which displacements are told from.
   void write(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
              std::int64_t step);
+  bool history_due(std::int64_t step) { return history_file_ && history_file_->due(step); }
+  void write_history(const PfvNamedRow& row) { history_file_->write_row(row); }
 
  private:
   void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
                     std::int64_t step);
-  std::vector<double> profile_row(const pfv::FlowModel& flow) const;
-  std::vector<double> flux_row(const pfv::FlowModel& flow) const;
-  std::vector<double> sensor_row(const pfv::FlowModel& flow) const;
+  PfvNamedRow profile_row(const pfv::FlowModel& flow) const;
+  PfvNamedRow flux_row(const pfv::FlowModel& flow) const;
+  PfvNamedRow sensor_row(const pfv::FlowModel& flow) const;
   pfv::SphereFields sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
                                   const Eigen::Matrix3Xd& unwrapped);
   Eigen::Matrix3Xd displacements(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped);
@@ -83,7 +89,7 @@ class PfvResultFiles {
   std::optional<PfvSensorOutput> sensors_;
   PfvSchedule field_schedule_;
   std::vector<PfvWrittenStep> written_;
-  std::optional<PfvRowFile> profile_file_, flux_file_, sensor_file_;
+  std::optional<PfvRowFile> profile_file_, flux_file_, sensor_file_, history_file_;
   std::map<std::int64_t, Eigen::Vector3d> first_places_;  ///< by tag
 };
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the fix writes itself: fields for ParaView, pressure profiles, its closing report."""
+import csv
 import re
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -103,6 +104,60 @@ class Output(CoupledTest):
         header, rows = self.profile()
         self.assertEqual(len(header.split(",")), 4)
         self.assertEqual([round(row[0] / 1e-5) for row in rows], [15, 20])
+
+    def history(self, name="h.csv"):
+        """Rows as dictionaries of texts."""
+        with open(self.folder / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_history_holds_what_thermo_prints(self):
+        """Each row is that of LIGGGHTS' own output; forces on grains and faces add up to nothing."""
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} history 5 h.csv\n"
+                      "thermo_style custom step f_flow f_flow[1] f_flow[2] f_flow[7]\n"
+                      "thermo_modify format float %.15g norm no\nthermo 5\nrun 10\n")
+        rows, printed = self.history(), read_thermo((self.folder / "log.liggghts").read_text())
+        self.assertEqual([int(row["step"]) for row in rows], [0, 5, 10])
+        for row, line in zip(rows, printed):
+            for name, word in (("strain", "flow"), ("inflow", "flow[1]"), ("outflow", "flow[2]"),
+                               ("mean_pressure", "flow[7]")):
+                self.assertAlmostEqual(float(row[name]), line[word], delta=1e-11 * abs(line[word]))
+            self.assertEqual(row["permeability"], "")  # of grains that move there is none
+            self.assertLess(abs(float(row["mass_error"])), 1e-12)
+            pushed = [float(row["zlo_force_z"]), float(row["zhi_force_z"]), float(row["force_z"])]
+            pushed += [float(row[f"{face}_force_z"]) for face in ("xlo", "xhi", "ylo", "yhi")]
+            self.assertLess(abs(sum(pushed)), 1e-11 * max(map(abs, pushed)))
+            self.assertEqual(float(row["zhi_position"]), EDGE)
+            self.assertAlmostEqual(float(row["zlo_flux"]) / float(row["inflow"]), 1, delta=0.2)
+        self.assertAlmostEqual(float(rows[-1]["time"]), 1e-4, delta=1e-15)
+
+    def test_history_counts_steps_that_were_solved_and_that_were_saved(self):
+        flow = WATER + " couple_every 4"
+        self.liggghts(HEAD + f"fix flow all pfv {flow} history 1 h.csv patch xlo 0 0.1 0 0.1 pressure 5\nrun 8\nrun 8\n")
+        rows = self.history()
+        self.assertEqual([(int(row["steps"]), int(row["solves"])) for row in rows],
+                         [(0, 0), (4, 1), (8, 2), (12, 3), (16, 4)])
+        self.assertEqual(float(rows[-1]["patch 1 on face xlo pressure"]), 5.0)
+
+    def test_history_of_a_container_has_its_names(self):
+        faces = " ".join(f"face {name} plane {place} {normal} {more}" for name, place, normal, more in (
+            ("left", "0 0 0", "1 0 0", ""), ("right", "0.1 0 0", "-1 0 0", ""), ("front", "0 0 0", "0 1 0", ""),
+            ("back", "0 0.1 0", "0 -1 0", ""), ("under,ground", "0 0 0", "0 0 1", "pressure 10"),
+            ("lid", "0 0 0.1", "0 0 -1", "pressure 0")))
+        self.liggghts(HEAD + f"fix flow all pfv viscosity 0.01 container {faces} history 1 h.csv\nrun 0\n")
+        row, = self.history()
+        self.assertEqual((float(row["lid_position"]), float(row["under,ground_position"])), (0.1, 0.0))
+        self.assertGreater(float(row["under,ground_flux"]), 0.0)
+
+    def test_restarted_run_goes_on_with_its_history(self):
+        """To the same bytes, with the counts of all runs; what a run that was killed has left of its last row goes."""
+        for words in (FLOW, WATER + " couple_every 4"):
+            fix = f"fix flow all pfv {words} history 5 h.csv\n"
+            self.liggghts(HEAD + fix + "run 10\nwrite_restart file.restart\nrun 10\n")
+            whole = (self.folder / "h.csv").read_bytes()
+            self.assertEqual(whole.count(b"\n"), 6)
+            (self.folder / "h.csv").write_bytes(whole.rstrip(b"\n") + b"\n25,0.00")
+            self.liggghts(restarted_head() + fix + "run 10\n")
+            self.assertEqual((self.folder / "h.csv").read_bytes(), whole)
 
     def test_file_that_cannot_be_written_stops_the_run(self):
         (self.folder / "post" / "flow_pores_0.vtu" / "in_the_way").mkdir(parents=True)

@@ -25,6 +25,9 @@ Container read_container(const std::string& path);
 // Every writer writes beside the target and renames at the end: a file is whole or absent.
 // Each throws FileError.
 
+/// Text of a caller's own. A stream (a device, a pipe, /dev/stdout) is appended to.
+void write_text(const std::string& path, const std::string& text);
+
 /// `id,fx,fy,fz,fpx,fpy,fpz,fvx,fvy,fvz`, N; needs split forces.
 void write_forces(const std::string& path, const Packing& packing, const Forces& forces);
 

@@ -95,6 +95,8 @@ void detail::write_file(const std::string& path, std::string_view content) {
   }
 }
 
+void write_text(const std::string& path, const std::string& text) { detail::write_file(path, text); }
+
 void require_folder_of(const std::string& path) {
   if (path.empty()) throw InputError("an output file has no name: give one");
   if (detail::is_stream(path)) return;
