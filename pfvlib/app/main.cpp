@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_command.hpp"
+#include "convert_command.hpp"
 #include "pfv/error.hpp"
 #include "pfv/version.hpp"
 #include "selftest_command.hpp"
@@ -30,8 +31,9 @@ const std::string version_line = std::string("pfv ") + pfv::version;
 /// What one call of the program may be, with the arguments of each.
 struct Commands {
   CLI::App app{"Flow through the pores of a sphere packing by pore-scale finite volumes (PFV)", "pfv"};
-  CLI::App *solve, *selftest, *bench, *time_step, *settings;
+  CLI::App *solve, *convert, *selftest, *bench, *time_step, *settings;
   pfv::app::SolveArguments solve_arguments;
+  pfv::app::ConvertArguments convert_arguments;
   pfv::app::BenchArguments bench_arguments;
   pfv::app::TimeStepArguments time_step_arguments;
   bool of_fix = false;
@@ -40,12 +42,14 @@ struct Commands {
     app.set_version_flag("--version", version_line);
     app.require_subcommand(1);
     solve = add("solve", "pressures, fluxes and forces of one packing");
+    convert = add("convert", "files of spheres from one format into another");
     selftest = add("selftest", "known problems on this machine: a table of pass and fail");
     bench = add("bench", "times of each phase on packings made here, and what a run would cost");
     time_step =
         add("time-step", "which time step an explicit coupling bears, and the papers' estimates of it");
     settings = add("settings", "the table of all settings, as a page of the documentation");
     pfv::app::add_solve_options(*solve, solve_arguments);
+    pfv::app::add_convert_options(*convert, convert_arguments);
     pfv::app::add_bench_options(*bench, bench_arguments);
     pfv::app::add_time_step_options(*time_step, time_step_arguments);
     settings->add_flag("--fix", of_fix, "the keywords of fix pfv instead, as its page has them");
@@ -65,6 +69,10 @@ struct Commands {
         "  pfv solve --packing grains.csv --box 0 1 0 1 0 1 --face zlo:pressure=0\n"
         "            --face zhi:pressure=1 --wall symmetry --report report.json\n"
         "Exit status: 0; 2 bad input; 1 any other failure (solver, disk).");
+    convert->footer(
+        "Example: the grains of a LIGGGHTS run for YADE\n"
+        "  pfv convert post/grains.dump grains.txt\n"
+        "What the format does not hold (ids, velocities, bounds, periodic sides) is said.");
     bench->footer(
         "Example: what a run of 20000 grains and a million steps costs here\n"
         "  pfv bench --spheres 1000,5000 --predict 20000 --steps 1e6 --steps-per-network 5000");
@@ -79,7 +87,9 @@ struct Commands {
 int carry_out(const Commands& commands) {
   using namespace pfv::app;
   if (commands.selftest->parsed()) return selftest(std::cout) ? succeeded : failed;
-  if (commands.bench->parsed())
+  if (commands.convert->parsed())
+    convert(commands.convert_arguments, std::cout, std::cerr);
+  else if (commands.bench->parsed())
     bench(commands.bench_arguments, std::cout);
   else if (commands.time_step->parsed())
     time_step(commands.time_step_arguments, std::cout, std::cerr);

@@ -118,8 +118,6 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
   add_cell_options(command, arguments, group);
 }
 
-namespace {
-
 double length_unit_of(const std::string& text) {
   struct Unit {
     const char* name;
@@ -129,6 +127,8 @@ double length_unit_of(const std::string& text) {
     if (text == unit.name) return unit.metres;
   return positive("--length-unit", text);
 }
+
+namespace {
 
 bool box_is_auto(const SolveArguments& arguments) { return arguments.box == std::vector<std::string>{"auto"}; }
 
@@ -267,9 +267,13 @@ fs::path full_name(const std::string& path) {
   return fs::weakly_canonical(fs::absolute(path, none), none);
 }
 
+}  // namespace
+
 bool same_file(const std::string& one, const std::string& other) {
   return !detail::is_stream(one) && full_name(one) == full_name(other);  // not /dev/null twice
 }
+
+namespace {
 
 /// One output must neither replace another nor the packing.
 void check_outputs(const SolveRequest& request) {

@@ -59,4 +59,10 @@ void add_solve_options(CLI::App& command, SolveArguments& arguments);
 /// are not there included.
 SolveRequest request_of(const SolveArguments& arguments);
 
+/// Metres of "mm" or of a number; throws InputError.
+double length_unit_of(const std::string& text);
+
+/// Whether both names lead to one file that a write would replace.
+bool same_file(const std::string& one, const std::string& other);
+
 }  // namespace pfv::app

@@ -2,10 +2,11 @@
 """What the fix writes itself: fields for ParaView, pressure profiles, its closing report."""
 import csv
 import re
+import subprocess
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from coupled import EDGE, FLOW, WATER, CoupledTest, dump, packing, random_velocities, read_dump
+from coupled import BIN, EDGE, FLOW, WATER, CoupledTest, dump, packing, random_velocities, read_dump
 from coupled import read_thermo, restarted_head, write_data
 
 HEAD = "include in.packing\n"
@@ -158,6 +159,16 @@ class Output(CoupledTest):
             (self.folder / "h.csv").write_bytes(whole.rstrip(b"\n") + b"\n25,0.00")
             self.liggghts(restarted_head() + fix + "run 10\n")
             self.assertEqual((self.folder / "h.csv").read_bytes(), whole)
+
+    def test_liggghts_reads_what_pfv_convert_writes(self):
+        """The same bytes come out of a run on the data file and on one that went through a dump."""
+        run = HEAD + f"fix flow all pfv {FLOW}\n" + dump("d.dump") + "run 2\n"
+        self.liggghts(run)
+        first = (self.folder / "d.dump").read_bytes()
+        for names in (["packing.data", "a.dump"], ["a.dump", "packing.data", "--density", "2600"]):
+            subprocess.run([BIN / "pfv", "convert", *names], cwd=self.folder, check=True, capture_output=True)
+        self.liggghts(run)
+        self.assertEqual((self.folder / "d.dump").read_bytes(), first)
 
     def test_file_that_cannot_be_written_stops_the_run(self):
         (self.folder / "post" / "flow_pores_0.vtu" / "in_the_way").mkdir(parents=True)

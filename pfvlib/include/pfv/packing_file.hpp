@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "pfv/names.hpp"
 #include "pfv/packing.hpp"
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +26,7 @@ struct PackingBounds {
 struct PackingFile {
   PackingArrays packing;
   std::optional<PackingBounds> bounds;
+  std::optional<std::int64_t> step;  ///< of a dump
   std::vector<std::string> remarks;  ///< what was assumed in reading, a sentence each
 };
 
@@ -44,5 +47,38 @@ struct PackingChoice {
 /// - points of a legacy VTK file (ASCII), a .vtu or a .vtp file.
 /// Throws InputError naming file, line and field, or what kind of file it is instead.
 PackingFile read_packing_file(const std::string& path, const PackingChoice& choice = {});
+
+/// The formats that spheres are written in.
+enum class PackingFormat {
+  table,  ///< id,x,y,z,radius and velocities
+  yade,   ///< `#format x_y_z_r`: places and radii alone
+  dump,   ///< of LIGGGHTS, with bounds and periodic sides
+  data,   ///< of LIGGGHTS, atom style granular, with bounds
+  vtu     ///< points for ParaView
+};
+template <>
+struct Names<PackingFormat> {
+  static constexpr const char* what = "format";
+  static constexpr std::array<Named<PackingFormat>, 5> all{{{PackingFormat::table, "csv"},
+                                                            {PackingFormat::yade, "yade"},
+                                                            {PackingFormat::dump, "dump"},
+                                                            {PackingFormat::data, "data"},
+                                                            {PackingFormat::vtu, "vtu"}}};
+};
+
+struct PackingOutput {
+  std::optional<PackingFormat> format;  ///< absent: that of the file's ending
+  std::optional<double> density;        ///< of the grains, kg/m³, in a data file; absent: 2500, which is remarked
+};
+
+/// The format that a file's ending stands for: csv, txt or xyzr (YADE), dump, liggghts or lammpstrj (dump), data, vtu.
+/// Throws InputError for another one.
+PackingFormat packing_format_of(const std::string& path);
+
+/// Writes spheres so that `read_packing_file` gives the same numbers bit by bit, as far as the format holds them.
+/// Returns what it does not hold and what was assumed, a sentence each. The file is whole or absent. Throws InputError
+/// for an ending without a format or a folder that is not there, FileError where it cannot be written.
+std::vector<std::string> write_packing_file(const std::string& path, const PackingFile& file,
+                                            const PackingOutput& output = {});
 
 }  // namespace pfv

@@ -21,6 +21,7 @@ bool is_section(const Words& words) {
 struct Header {
   std::int64_t atoms = -1;
   PackingBounds bounds{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}};
+  bool tilted = false;
   std::string style;  ///< of `Atoms # style`, or empty
 };
 
@@ -49,6 +50,7 @@ Header read_header(TextLines& lines) {
       header.atoms = *atoms;
     }
     read_bounds(lines, words, header);
+    if (words.size() == 6 && words[3] == "xy") header.tilted = words[0] != "0" || words[1] != "0" || words[2] != "0";
     if (!is_section(words) || words[0] != "Atoms") continue;
     if (const std::size_t mark = lines.line().find('#'); mark != std::string_view::npos)
       header.style = std::string(trimmed(lines.line().substr(mark + 1)));
@@ -119,7 +121,7 @@ PackingFile read_data_file(const std::string& path, std::string_view text) {
   });
   PackingFile file;
   file.packing = table->arrays(path);
-  file.bounds = header.bounds;
+  if (!header.tilted) file.bounds = header.bounds;  // a tilted box whose periodic sides are not known is no room
   while (lines.next_filled())
     if (starts_with(lines.line(), "Velocities")) read_velocities(lines, file.packing);
   if (text.back() != '\n') lines.fail("the file ends inside this line: its last number may be cut off");

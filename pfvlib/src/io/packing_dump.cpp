@@ -165,6 +165,7 @@ PackingFile read_snapshot(const std::string& path, std::string_view text, const 
   const std::string_view own = text.substr(snapshot.begin);
   TextLines lines(path, own, lines_before);
   PackingFile file;
+  file.step = snapshot.step;
   std::int64_t atoms = -1;
   while (lines.next()) {
     if (starts_with(lines.line(), "ITEM: NUMBER OF ATOMS")) atoms = read_number_of_atoms(lines);
@@ -207,7 +208,7 @@ PackingFile read_dump(const std::string& path, std::string_view text, const Pack
   if (choice.snapshot == "last") {  // found without looking at the others
     const std::size_t begin = text.rfind(step_item);
     if (begin == std::string_view::npos) throw InputError(path + ": has no ITEM: TIMESTEP: write the dump anew");
-    return read_snapshot(path, text, {begin, text.size(), {}, {}});
+    return read_snapshot(path, text, {begin, text.size(), integer(line_after(text, begin)), {}});
   }
   const std::vector<Snapshot> snapshots = snapshots_of(text);
   if (snapshots.empty()) throw InputError(path + ": has no ITEM: TIMESTEP: write the dump anew");
