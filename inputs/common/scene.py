@@ -2,11 +2,13 @@
 """What the run.py of the scenes share: KEY=VALUE words, running LIGGGHTS and pfv with progress,
 the table of results beside their references."""
 import json
+import pathlib
 import resource
 import subprocess
 import sys
 import time
 
+import plotting
 from programs import BIN, liggghts_words, solve_words
 
 # settings that many scenes have: (type, default, what it is)
@@ -139,11 +141,25 @@ def summary(folder, base, figures, rows):
     return passed
 
 
+def sheet_of_figures(name, out, begin):
+    """The pictures that the scene has drawn as OUT_*.png since `begin`, on one sheet beside them."""
+    stem = pathlib.Path(__file__).resolve().parents[1] / name / out
+    sheet = stem.with_name(stem.name + "_all_figures.png")
+    drawn = sorted(file for file in stem.parent.glob(stem.name + "*.png")
+                   if file != sheet and file.stat().st_mtime >= begin)
+    if len(drawn) > 1:
+        plotting.contact_sheet(drawn, sheet)
+        print(f"all figures on one sheet: {sheet}")
+
+
 def main(name, work):
     """work(words) -> whether the promises held; exit status 0, 1 (not held, failed) or 2 (bad
-    words)."""
+    words). Ends with a sheet of the scene's figures."""
+    begin = time.time() - 1  # a file system may keep whole seconds
     try:
         passed = work(sys.argv[1:])
+        out = next((word.partition("=")[2] for word in sys.argv[1:] if word.startswith("OUT=")), OUT[1])
+        sheet_of_figures(name, out, begin)
     except Failure as failure:
         print(f"{name}: {failure}", file=sys.stderr)
         sys.exit(2 if isinstance(failure, BadSetting) else 1)

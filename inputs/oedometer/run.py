@@ -6,8 +6,10 @@
     run.py study               the tables of doc/oedometer.md: sizes, seeds, thresholds, times
 """
 import sys
+import time
 
 import oedometer
+import scene
 import study
 
 
@@ -16,7 +18,9 @@ def main(words):
         if words == ["study"]:
             study.study()
             return 0
-        summary = oedometer.run(oedometer.parse(words))
+        begin, settings = time.time() - 1, oedometer.parse(words)
+        summary = oedometer.run(settings)
+        scene.sheet_of_figures("oedometer", settings["OUT"], begin)
     except oedometer.Failure as failure:
         print(f"oedometer: {failure}", file=sys.stderr)
         return 2 if isinstance(failure, oedometer.BadSetting) else 1
