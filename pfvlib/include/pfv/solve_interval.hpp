@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace pfv {
@@ -61,29 +62,44 @@ class SolveInterval {
   struct Errors {
     double held, continued;
   };
-  /// What loads differ by from what had been expected.
+  /// Forces on grains and on faces.
   struct Difference {
     Eigen::Matrix3Xd grains;
     std::vector<Eigen::Vector3d> faces;
   };
+  /// Means of what loads differ by from what had been expected; empty where none is known.
+  struct Missed {
+    Difference held, continued;
+  };
+  struct Loads {
+    Eigen::Matrix<double, 6, Eigen::Dynamic> grains;  ///< force (N) and torque (N m)
+    std::vector<Eigen::Vector3d> faces;               ///< N
+  };
+  struct Solve {
+    Packing::Ids ids;
+    Loads loads;
+    int steps;  ///< since the one before it
+  };
   struct Scales {
     double face, grain;  ///< N
   };
+  static Loads loads_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces);
   static double size_of(const Difference& difference, const Scales& scales);
   static double error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales);
-  Errors errors_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces,
-                   const Scales& scales, double apart, double weight);
+  Scales scales_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces, double face_load,
+                   double face_area, double section);
+  Errors errors_of(const Loads& loads, const Scales& scales, double apart, double weight);
+  void compare(const Loads& loads, const Scales& scales, int steps, int most, double answer);
   void choose(Errors errors, int most);
 
   double tolerance_;
-  bool known_ = false, trend_known_ = false, continues_ = false;
-  int steps_ = 1, last_steps_ = 1;
+  std::optional<Solve> last_;
+  std::optional<Loads> trend_;  ///< change of the loads a step
+  bool continues_ = false;
+  int steps_ = 1;
   double error_ = 0.0, largest_error_ = 0.0, change_ = 0.0, share_ = 0.0;
   Errors memory_{0.0, 0.0};  ///< of the errors over the steps, or their square: it fades
-  Difference missed_held_, missed_continued_;  ///< means; empty where none is known
-  Packing::Ids ids_;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> last_, trend_;  ///< loads, and their change a step
-  std::vector<Eigen::Vector3d> last_faces_, face_trend_;
+  Missed missed_;
   HeldLoads held_;
 };
 

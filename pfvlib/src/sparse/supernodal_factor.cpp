@@ -39,76 +39,116 @@ int eliminate_triangle(double* triangle, std::ptrdiff_t stride, int columns, con
   return SupernodalFactor::none;
 }
 
-}  // namespace
-
-void SupernodalFactor::add_blocks(const Supernodes& supernodes, int s, int room_behind) {
+void add_blocks(BlockLayout& layout, const Supernodes& supernodes, int s, int room_behind) {
   const int width = supernodes.width(s), height = supernodes.height(s);
   for (int done = 0; done < width; done += block_width) {
     const FactorBlock block{supernodes.first_column[s] + done, std::min(block_width, width - done),
                             height - done, supernodes.rows_begin[s] + done,
-                            static_cast<std::int64_t>(size_)};
-    std::fill_n(block_of_.begin() + block.first_column, block.columns,
-                static_cast<int>(blocks_.size()));
-    size_ += static_cast<std::size_t>(block.columns) * block.height + room_behind;
-    tallest_ = std::max(tallest_, block.height);
-    blocks_.push_back(block);
+                            static_cast<std::int64_t>(layout.size)};
+    std::fill_n(layout.block_of.begin() + block.first_column, block.columns,
+                static_cast<int>(layout.blocks.size()));
+    layout.size += static_cast<std::size_t>(block.columns) * block.height + room_behind;
+    layout.tallest = std::max(layout.tallest, block.height);
+    layout.blocks.push_back(block);
   }
 }
 
-void SupernodalFactor::analyze(const Supernodes& supernodes, const SubtreeCut& cut,
-                               const int* permutation) {
+BlockLayout layout_of(const Supernodes& supernodes, const SubtreeCut& cut, const int* permutation) {
+  BlockLayout layout;
   const int n = supernodes.columns;
-  permutation_ = permutation;
-  rows_ = supernodes.rows;
-  inverse_.resize(n);
-  for (int k = 0; k < n; ++k) inverse_[permutation[k]] = k;
-  block_of_.resize(n);
-  blocks_.clear();
-  size_ = 0;
-  tallest_ = 0;
+  layout.permutation = permutation;
+  layout.rows = supernodes.rows;
+  layout.inverse.resize(n);
+  for (int k = 0; k < n; ++k) layout.inverse[permutation[k]] = k;
+  layout.block_of.resize(n);
   // What a kernel reads beyond a block must be no other thread's to write.
   std::vector<int> room_behind(supernodes.count, 0);
   for (const auto& [first, end] : cut.subtrees) room_behind[end - 1] = tile_rows;
   for (const int s : cut.above) room_behind[s] = tile_rows;
   std::vector<int> first_block{0};
   for (int s = 0; s < supernodes.count; ++s) {
-    add_blocks(supernodes, s, room_behind[s]);
-    first_block.push_back(static_cast<int>(blocks_.size()));
+    add_blocks(layout, supernodes, s, room_behind[s]);
+    first_block.push_back(static_cast<int>(layout.blocks.size()));
   }
-  size_ += tile_rows;
-  subtrees_.clear();
-  above_.clear();
-  is_above_.assign(blocks_.size(), 0);
+  layout.size += tile_rows;
+  layout.is_above.assign(layout.blocks.size(), 0);
   for (const auto& [first, end] : cut.subtrees)
-    subtrees_.push_back({first_block[first], first_block[end]});
+    layout.subtrees.push_back({first_block[first], first_block[end]});
   for (const int s : cut.above)
     for (int block = first_block[s]; block < first_block[s + 1]; ++block) {
-      above_.push_back(block);
-      is_above_[block] = 1;
+      layout.above.push_back(block);
+      layout.is_above[block] = 1;
     }
+  return layout;
 }
 
+/// One factorisation: L as far as it has come, and which blocks wait for which.
+class Factorisation {
+ public:
+  Factorisation(const BlockLayout& layout, const SymmetricRows& matrix, double lost_pivot, const double* signs,
+                double* values)
+      : layout_(layout), matrix_(matrix), lost_pivot_(lost_pivot), signs_(signs), values_(values),
+        first_update_(layout.blocks.size(), none), next_update_(layout.blocks.size(), none),
+        done_rows_(layout.blocks.size(), 0) {}
+
+  /// Returns `none`, or the first column whose pivot is lost.
+  int run(Team& team);
+
+ private:
+  using Range = BlockLayout::Range;
+  static constexpr int none = SupernodalFactor::none;
+
+  /// Where a thread notes which row of the block at hand each row of the matrix is.
+  struct WorkSpace {
+    std::vector<int> place;     ///< by rows of the matrix
+    std::vector<int> rows;      ///< of a block that is to be subtracted
+    std::vector<int> updating;  ///< those blocks
+    std::vector<double> with_signs;  ///< rows of a block times D, in the block's own places; empty without signs
+  };
+
+  std::vector<WorkSpace> work_spaces(int threads) const;
+  void begin_block(const FactorBlock& block, double* diagonal, WorkSpace& work);
+  void take_updates(int block, WorkSpace& work) const;
+  void subtract(const FactorBlock& from, Range columns, const FactorBlock& to, Range target_rows,
+                const std::vector<int>& place, WorkSpace& own) const;
+  const double* times_signs(const FactorBlock& block, Range rows, Range columns, WorkSpace& work) const;
+  int eliminate_diagonal(const FactorBlock& block, const double* least_pivot, double* inverse_pivot,
+                         WorkSpace& work) const;
+  const double* top_of(const FactorBlock& block, const WorkSpace& work) const;
+  void eliminate_rows(const FactorBlock& block, const double* inverse_pivot, const double* top, Range rows) const;
+  void link(int block, bool above);
+  int factor_subtree(Range blocks, WorkSpace& work);
+  int factor_above(std::vector<WorkSpace>& work, Team& team);
+
+  const BlockLayout& layout_;
+  const SymmetricRows& matrix_;
+  double lost_pivot_;
+  const double* signs_;  ///< null: all are 1
+  double* values_;
+  std::vector<int> first_update_, next_update_;  ///< lists of the blocks that a block waits for
+  std::vector<int> done_rows_;                   ///< of each block: rows above have been subtracted
+};
+
 /// A's entries in the block; `diagonal`: those on the diagonal.
-void SupernodalFactor::begin_block(const FactorBlock& block, const SymmetricRows& matrix,
-                                   double* diagonal, WorkSpace& work) {
+void Factorisation::begin_block(const FactorBlock& block, double* diagonal, WorkSpace& work) {
   double* column = values_ + block.first_value;
-  const int* const rows = rows_of(block);
+  const int* const rows = layout_.rows_of(block);
   std::fill_n(column, static_cast<std::size_t>(block.columns) * block.height, 0.0);
   for (int i = 0; i < block.height; ++i) work.place[rows[i]] = i;
   for (int j = 0; j < block.columns; ++j, column += block.height) {
-    const int row = permutation_[block.first_column + j];
+    const int row = layout_.permutation[block.first_column + j];
     diagonal[j] = 0.0;
-    for (int k = matrix.row_begin[row]; k < matrix.row_begin[row + 1]; ++k) {
-      const int i = inverse_[matrix.column[k]];
+    for (int k = matrix_.row_begin[row]; k < matrix_.row_begin[row + 1]; ++k) {
+      const int i = layout_.inverse[matrix_.column[k]];
       if (i < block.first_column + j) continue;
-      column[work.place[i]] = matrix.value[k];
-      if (i == block.first_column + j) diagonal[j] = matrix.value[k];
+      column[work.place[i]] = matrix_.value[k];
+      if (i == block.first_column + j) diagonal[j] = matrix_.value[k];
     }
   }
 }
 
 /// The blocks that the list of `block` holds.
-void SupernodalFactor::take_updates(int block, WorkSpace& work) {
+void Factorisation::take_updates(int block, WorkSpace& work) const {
   work.updating.clear();
   for (int from = first_update_[block]; from != none; from = next_update_[from])
     work.updating.push_back(from);
@@ -116,8 +156,8 @@ void SupernodalFactor::take_updates(int block, WorkSpace& work) {
 
 /// Rows of L D for some columns of a block, each at its place in a block of its own; L itself where D is 1. What
 /// the other columns hold stays.
-const double* SupernodalFactor::times_signs(const FactorBlock& block, Range rows, Range columns,
-                                            WorkSpace& work) const {
+const double* Factorisation::times_signs(const FactorBlock& block, Range rows, Range columns,
+                                         WorkSpace& work) const {
   const double* const values = values_ + block.first_value;
   if (!signs_) return values;
   for (int c = columns.begin; c < columns.end; ++c) {
@@ -129,16 +169,16 @@ const double* SupernodalFactor::times_signs(const FactorBlock& block, Range rows
 }
 
 /// Of a block whose diagonal has been eliminated last.
-const double* SupernodalFactor::top_of(const FactorBlock& block, const WorkSpace& work) const {
+const double* Factorisation::top_of(const FactorBlock& block, const WorkSpace& work) const {
   return signs_ ? work.with_signs.data() : values_ + block.first_value;
 }
 
 /// to -= from(:, all) D from(columns, all)^T in some rows of `to`. `columns` counts rows of `from`.
-void SupernodalFactor::subtract(const FactorBlock& from, Range columns, const FactorBlock& to,
-                                Range target_rows, const std::vector<int>& place, WorkSpace& own) const {
+void Factorisation::subtract(const FactorBlock& from, Range columns, const FactorBlock& to,
+                             Range target_rows, const std::vector<int>& place, WorkSpace& own) const {
   const kernels::FactorKernels& k = kernels::factor_kernels();
   std::vector<int>& rows = own.rows;
-  const int* const from_rows = rows_of(from);
+  const int* const from_rows = layout_.rows_of(from);
   int begin = columns.begin, end = from.height;
   const auto above = [&](int row, int target) { return place[row] < target; };
   if (target_rows.begin > 0)
@@ -167,8 +207,8 @@ void SupernodalFactor::subtract(const FactorBlock& from, Range columns, const Fa
 }
 
 /// L of the block's own triangle. Returns the column that has no pivot, or `none`.
-int SupernodalFactor::eliminate_diagonal(const FactorBlock& block, const double* least_pivot,
-                                         double* inverse_pivot, WorkSpace& work) const {
+int Factorisation::eliminate_diagonal(const FactorBlock& block, const double* least_pivot,
+                                      double* inverse_pivot, WorkSpace& work) const {
   const kernels::FactorKernels& k = kernels::factor_kernels();
   double* const values = values_ + block.first_value;
   const double* const top = top_of(block, work);
@@ -202,8 +242,8 @@ int SupernodalFactor::eliminate_diagonal(const FactorBlock& block, const double*
 }
 
 /// `top`: the block's triangle times D.
-void SupernodalFactor::eliminate_rows(const FactorBlock& block, const double* inverse_pivot, const double* top,
-                                      Range rows) const {
+void Factorisation::eliminate_rows(const FactorBlock& block, const double* inverse_pivot, const double* top,
+                                   Range rows) const {
   const kernels::FactorKernels& k = kernels::factor_kernels();
   double* const values = values_ + block.first_value;
   const std::ptrdiff_t stride = block.height;
@@ -219,25 +259,25 @@ void SupernodalFactor::eliminate_rows(const FactorBlock& block, const double* in
 }
 
 /// Puts a block on the list of the next one that it changes, where that is above the subtrees or not.
-void SupernodalFactor::link(int block, bool above) {
-  const FactorBlock& b = blocks_[block];
+void Factorisation::link(int block, bool above) {
+  const FactorBlock& b = layout_.blocks[block];
   if (done_rows_[block] == b.height) return;
-  const int to = block_of_[rows_of(b)[done_rows_[block]]];
-  if (is_above_[to] != static_cast<char>(above)) return;
+  const int to = layout_.block_of[layout_.rows_of(b)[done_rows_[block]]];
+  if (layout_.is_above[to] != static_cast<char>(above)) return;
   next_update_[block] = first_update_[to];
   first_update_[to] = block;
 }
 
-int SupernodalFactor::factor_subtree(Range range, const SymmetricRows& matrix, WorkSpace& work) {
+int Factorisation::factor_subtree(Range range, WorkSpace& work) {
   for (int current = range.begin; current < range.end; ++current) {
-    const FactorBlock& block = blocks_[current];
+    const FactorBlock& block = layout_.blocks[current];
     const int last_column = block.first_column + block.columns;
     double pivot[block_width], inverse_pivot[block_width];
-    begin_block(block, matrix, pivot, work);
+    begin_block(block, pivot, work);
     take_updates(current, work);
     for (const int from : work.updating) {
-      const FactorBlock& b = blocks_[from];
-      const int* const rows = rows_of(b);
+      const FactorBlock& b = layout_.blocks[from];
+      const int* const rows = layout_.rows_of(b);
       Range columns{done_rows_[from], done_rows_[from]};
       while (columns.end < b.height && rows[columns.end] < last_column) ++columns.end;
       subtract(b, columns, block, {0, block.height}, work.place, work);
@@ -254,8 +294,6 @@ int SupernodalFactor::factor_subtree(Range range, const SymmetricRows& matrix, W
   return none;
 }
 
-namespace {
-
 /// visit(rows, thread) for all of the rows, shared between the threads where so many multiplications are worth it.
 template <class Range, class Visit>
 void in_pieces(Range all, double multiplications, Team& team, const Visit& visit) {
@@ -270,26 +308,23 @@ void in_pieces(Range all, double multiplications, Team& team, const Visit& visit
   team.run_with_space(pieces, visit_piece);
 }
 
-}  // namespace
-
 /// The blocks above the subtrees, one after the other, each shared by rows.
-int SupernodalFactor::factor_above(const SymmetricRows& matrix, std::vector<WorkSpace>& work,
-                                   Team& team) {
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    if (!is_above_[b]) link(static_cast<int>(b), true);
+int Factorisation::factor_above(std::vector<WorkSpace>& work, Team& team) {
+  for (std::size_t b = 0; b < layout_.blocks.size(); ++b)
+    if (!layout_.is_above[b]) link(static_cast<int>(b), true);
   std::vector<Range> columns;
-  for (const int current : above_) {
-    const FactorBlock& block = blocks_[current];
+  for (const int current : layout_.above) {
+    const FactorBlock& block = layout_.blocks[current];
     const int last_column = block.first_column + block.columns;
     double pivot[block_width], inverse_pivot[block_width];
     WorkSpace& shared = work.front();
-    begin_block(block, matrix, pivot, shared);
+    begin_block(block, pivot, shared);
     take_updates(current, shared);
     columns.clear();
     double products = 0.0;
     for (const int from : shared.updating) {
-      const FactorBlock& b = blocks_[from];
-      const int* const rows = rows_of(b);
+      const FactorBlock& b = layout_.blocks[from];
+      const int* const rows = layout_.rows_of(b);
       int& done = done_rows_[from];
       const int begin = done;
       while (done < b.height && rows[done] < last_column) ++done;
@@ -299,7 +334,7 @@ int SupernodalFactor::factor_above(const SymmetricRows& matrix, std::vector<Work
     }
     in_pieces(Range{0, block.height}, products, team, [&](Range rows, int thread) {
       for (std::size_t k = 0; k < shared.updating.size(); ++k)
-        subtract(blocks_[shared.updating[k]], columns[k], block, rows, shared.place, work[thread]);
+        subtract(layout_.blocks[shared.updating[k]], columns[k], block, rows, shared.place, work[thread]);
     });
     for (int j = 0; j < block.columns; ++j) pivot[j] = lost_pivot_ * std::abs(pivot[j]);
     const int lost = eliminate_diagonal(block, pivot, inverse_pivot, shared);
@@ -313,31 +348,39 @@ int SupernodalFactor::factor_above(const SymmetricRows& matrix, std::vector<Work
   return none;
 }
 
-int SupernodalFactor::factorize(const SymmetricRows& matrix, double lost_pivot, const std::vector<double>& signs,
-                                double* values, Team& team) {
-  values_ = values;
-  signs_ = signs.empty() ? nullptr : signs.data();
-  lost_pivot_ = lost_pivot;
-  first_update_.assign(blocks_.size(), none);
-  next_update_.assign(blocks_.size(), none);
-  done_rows_.assign(blocks_.size(), 0);
-  std::vector<WorkSpace> work(team.threads());
+std::vector<Factorisation::WorkSpace> Factorisation::work_spaces(int threads) const {
+  std::vector<WorkSpace> work(threads);
   for (WorkSpace& own : work) {
-    own.place.resize(block_of_.size());
-    own.rows.resize(tallest_);
-    own.updating.reserve(blocks_.size());
-    if (signs_) own.with_signs.resize(static_cast<std::size_t>(tallest_) * block_width + tile_rows);
+    own.place.resize(layout_.block_of.size());
+    own.rows.resize(layout_.tallest);
+    own.updating.reserve(layout_.blocks.size());
+    if (signs_) own.with_signs.resize(static_cast<std::size_t>(layout_.tallest) * block_width + tile_rows);
   }
-  std::vector<int> lost(subtrees_.size(), none);
-  team.run_with_space(static_cast<int>(subtrees_.size()), [&](int k, int thread) {
-    lost[k] = factor_subtree(subtrees_[k], matrix, work[thread]);
+  return work;
+}
+
+int Factorisation::run(Team& team) {
+  std::vector<WorkSpace> work = work_spaces(team.threads());
+  std::vector<int> lost(layout_.subtrees.size(), none);
+  team.run_with_space(static_cast<int>(lost.size()), [&](int k, int thread) {
+    lost[k] = factor_subtree(layout_.subtrees[k], work[thread]);
   });
   int first = none;
   for (const int column : lost)
     if (column != none && (first == none || column < first)) first = column;
-  if (first == none) first = factor_above(matrix, work, team);
-  first_update_ = next_update_ = done_rows_ = {};
-  return first;
+  return first == none ? factor_above(work, team) : first;
+}
+
+}  // namespace
+
+void SupernodalFactor::analyze(const Supernodes& supernodes, const SubtreeCut& cut,
+                               const int* permutation) {
+  layout_ = layout_of(supernodes, cut, permutation);
+}
+
+int SupernodalFactor::factorize(const SymmetricRows& matrix, double lost_pivot, const std::vector<double>& signs,
+                                double* values, Team& team) const {
+  return Factorisation(layout_, matrix, lost_pivot, signs.empty() ? nullptr : signs.data(), values).run(team);
 }
 
 }  // namespace pfv

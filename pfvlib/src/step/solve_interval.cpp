@@ -14,16 +14,6 @@ constexpr double fastest_growth = 1.5, fastest_fall = 0.25;  // of the interval,
 constexpr double at_once = 0.1;  // of the tolerance: what an error may be that does not last
 constexpr double fading = 0.9;  // of what errors were, at a solve: they pass through zero where trends turn
 
-Eigen::Matrix<double, 6, Eigen::Dynamic> loads_of(const Forces& forces) {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> loads(6, forces.total.cols());
-  loads.topRows<3>() = forces.total;
-  if (forces.torque.cols() > 0)
-    loads.bottomRows<3>() = forces.torque;
-  else
-    loads.bottomRows<3>().setZero();
-  return loads;
-}
-
 template <class Columns>
 double root_mean_square(const Columns& columns) {
   return columns.cols() > 0 ? std::sqrt(columns.squaredNorm() / static_cast<double>(columns.cols()))
@@ -48,12 +38,24 @@ double ratio(double part, double whole) { return part > 0.0 ? part / whole : 0.0
 }  // namespace
 
 void SolveInterval::restart() {
-  known_ = trend_known_ = continues_ = false;
-  steps_ = last_steps_ = 1;
+  last_.reset();
+  trend_.reset();
+  continues_ = false;
+  steps_ = 1;
   error_ = change_ = 0.0;
   memory_ = {0.0, 0.0};
   held_ = {};
-  missed_held_ = missed_continued_ = {};
+  missed_ = {};
+}
+
+SolveInterval::Loads SolveInterval::loads_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces) {
+  Loads loads{Eigen::Matrix<double, 6, Eigen::Dynamic>(6, forces.total.cols()), faces};
+  loads.grains.topRows<3>() = forces.total;
+  if (forces.torque.cols() > 0)
+    loads.grains.bottomRows<3>() = forces.torque;
+  else
+    loads.grains.bottomRows<3>().setZero();
+  return loads;
 }
 
 double SolveInterval::size_of(const Difference& difference, const Scales& scales) {
@@ -72,35 +74,44 @@ double SolveInterval::error_of(const Difference& missed, Difference& mean, doubl
   return std::max(size_of(mean, scales), at_once * size_of(missed, scales));
 }
 
-SolveInterval::Errors SolveInterval::errors_of(const Forces& forces,
-                                               const std::vector<Eigen::Vector3d>& faces,
-                                               const Scales& scales, double apart, double weight) {
-  Difference missed{forces.total - last_.topRows<3>(), minus(faces, 1.0, last_faces_)};
+/// What errors are measured by, and the fluid's part in it.
+SolveInterval::Scales SolveInterval::scales_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces,
+                                               double face_load, double face_area, double section) {
+  const double of_fluid = largest_norm(faces), of_grains = root_mean_square(forces.total);
+  const double face = std::max(face_load, of_fluid);
+  const Scales scales{face, std::max(of_grains, face / face_area * section)};
+  share_ = std::max(ratio(of_fluid, scales.face), ratio(of_grains, scales.grain));
+  return scales;
+}
+
+SolveInterval::Errors SolveInterval::errors_of(const Loads& loads, const Scales& scales, double apart, double weight) {
+  Difference missed{loads.grains.topRows<3>() - last_->loads.grains.topRows<3>(),
+                    minus(loads.faces, 1.0, last_->loads.faces)};
   change_ = size_of(missed, scales);
-  Errors errors{error_of(missed, missed_held_, weight, scales), 0.0};
+  Errors errors{error_of(missed, missed_.held, weight, scales), 0.0};
   errors.continued = errors.held;
-  if (!trend_known_) return errors;
-  missed.grains -= apart * trend_.topRows<3>();
-  missed.faces = minus(missed.faces, apart, face_trend_);
-  errors.continued = error_of(missed, missed_continued_, weight, scales);
+  if (!trend_) return errors;
+  missed.grains -= apart * trend_->grains.topRows<3>();
+  missed.faces = minus(missed.faces, apart, trend_->faces);
+  errors.continued = error_of(missed, missed_.continued, weight, scales);
   return errors;
 }
 
 void SolveInterval::choose(Errors errors, int most) {
   const double wanted = aim * tolerance_;
-  const double now = last_steps_;
+  const double now = last_->steps;
   // the middles of two intervals of n steps are n apart; what is held errs with that, a trend with its square
   memory_.held = std::max(errors.held / now, fading * memory_.held);
-  if (trend_known_)
+  if (trend_)
     memory_.continued = std::max(errors.continued / (now * now), fading * memory_.continued);
   const double unlimited = fastest_growth * now + 1.0;
   const double if_held =
       std::min<double>(most, memory_.held > 0.0 ? wanted / memory_.held : unlimited);
   const double if_continued =
-      !trend_known_ ? 0.0
-                    : std::min<double>(most / 2, memory_.continued > 0.0
-                                                     ? std::sqrt(wanted / memory_.continued)
-                                                     : unlimited);
+      !trend_ ? 0.0
+              : std::min<double>(most / 2, memory_.continued > 0.0
+                                               ? std::sqrt(wanted / memory_.continued)
+                                               : unlimited);
   continues_ = if_continued > if_held;
   const double bounded =
       std::clamp(std::max(if_held, if_continued), fastest_fall * now, unlimited);
@@ -108,46 +119,45 @@ void SolveInterval::choose(Errors errors, int most) {
   steps_ = std::clamp(static_cast<int>(std::floor(bounded + 1e-9)), 1, std::max(limit, 1));
 }
 
+/// Takes these loads beside those of the last solve, `steps` before: errors, the interval that follows, the trend.
+void SolveInterval::compare(const Loads& loads, const Scales& scales, int steps, int most, double answer) {
+  const double apart = 0.5 * (steps + last_->steps);  // of the middles of this interval and the last
+  const double weight = answer > 0.0 ? -std::expm1(-steps / answer) : 1.0;
+  const Errors errors = errors_of(loads, scales, apart, weight);
+  error_ = continues_ ? errors.continued : errors.held;
+  largest_error_ = std::max(largest_error_, error_);
+  last_->steps = steps;
+  choose(errors, most);
+  trend_ = Loads{(loads.grains - last_->loads.grains) / apart, minus(loads.faces, 1.0, last_->loads.faces)};
+  for (Eigen::Vector3d& change : trend_->faces) change /= apart;
+}
+
 void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
                          const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
                          double face_area, double section, int most,
                          bool new_network, double answer) {
-  if (known_ && (ids.size() != ids_.size() || ids != ids_)) restart();
-  Eigen::Matrix<double, 6, Eigen::Dynamic> loads = loads_of(forces);
-  const double of_fluid = largest_norm(faces), of_grains = root_mean_square(forces.total);
-  const double face_scale = std::max(face_load, of_fluid);
-  const Scales scales{face_scale, std::max(of_grains, face_scale / face_area * section)};
-  share_ = std::max(ratio(of_fluid, scales.face), ratio(of_grains, scales.grain));
-  if (known_ && new_network) {
-    trend_known_ = continues_ = false;
-    last_steps_ = steps;
+  if (last_ && (ids.size() != last_->ids.size() || ids != last_->ids)) restart();
+  Loads loads = loads_of(forces, faces);
+  const Scales scales = scales_of(forces, faces, face_load, face_area, section);
+  if (last_ && new_network) {
+    trend_.reset();
+    continues_ = false;
+    last_->steps = steps;
     steps_ = std::min(steps_, std::max(most, 1));
-  } else if (known_) {
-    const double apart = 0.5 * (steps + last_steps_);  // of the middles of this interval and the last
-    const double weight = answer > 0.0 ? -std::expm1(-steps / answer) : 1.0;
-    const Errors errors = errors_of(forces, faces, scales, apart, weight);
-    error_ = continues_ ? errors.continued : errors.held;
-    largest_error_ = std::max(largest_error_, error_);
-    trend_ = (loads - last_) / apart;
-    face_trend_ = minus(faces, 1.0, last_faces_);
-    for (Eigen::Vector3d& change : face_trend_) change /= apart;
-    last_steps_ = steps;
-    choose(errors, most);
-    trend_known_ = true;
+  } else if (last_) {
+    compare(loads, scales, steps, most, answer);
   }
   held_.offset = 0.5 * steps;
   const bool goes_on = continues_ && steps_ > 1;
-  held_.slope = goes_on ? trend_ : Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, loads.cols());
-  held_.face_slope = goes_on ? face_trend_ : std::vector<Eigen::Vector3d>(faces.size(), Eigen::Vector3d::Zero());
-  ids_ = ids;
-  last_ = std::move(loads);
-  last_faces_ = faces;
-  known_ = true;
+  held_.slope =
+      goes_on ? trend_->grains : Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, loads.grains.cols());
+  held_.face_slope = goes_on ? trend_->faces : std::vector<Eigen::Vector3d>(faces.size(), Eigen::Vector3d::Zero());
+  const int last_steps = last_ ? last_->steps : 1;
+  last_ = Solve{ids, std::move(loads), last_steps};
 }
 
 void SolveInterval::put_on_network(const Forces& forces, const std::vector<Eigen::Vector3d>& faces) {
-  last_ = loads_of(forces);
-  last_faces_ = faces;
+  last_->loads = loads_of(forces, faces);
 }
 
 }  // namespace pfv
