@@ -381,8 +381,8 @@ void PfvFaceSources::begin_forces() {
       begun_[number] = stress->f_total(axis_of(number));
 }
 
-std::vector<pfv::Piston> PfvFaceSources::pistons(bool forces) const {
-  std::vector<pfv::Piston> pistons(count());
+void PfvFaceSources::read_pistons(bool forces) {
+  pistons_.assign(count(), {});
   std::vector<double> of_grains(count(), 0.0);
   bool any = false;
   for (int number = 0; number < count(); ++number) {
@@ -392,15 +392,14 @@ std::vector<pfv::Piston> PfvFaceSources::pistons(bool forces) const {
     any = true;
     // LIGGGHTS keeps the target with the other sign, as the force of the grains that answers it
     const double target = -(servo->*member(PfvServoSetPoint()));
-    pistons[number].mass = std::abs(target) / (servo->*member(PfvServoLargest()) *
-                                               servo->*member(PfvServoKi()));
-    pistons[number].other_force = target * (servo->*member(PfvServoAxis()))[axis];
+    pistons_[number].mass = std::abs(target) / (servo->*member(PfvServoLargest()) *
+                                                servo->*member(PfvServoKi()));
+    pistons_[number].other_force = target * (servo->*member(PfvServoAxis()))[axis];
     of_grains[number] = stress_of(meshes_[number])->f_total(axis) - begun_[number];
   }
-  if (!forces || !any) return pistons;
+  if (!forces || !any) return;
   MPI_Allreduce(MPI_IN_PLACE, of_grains.data(), count(), MPI_DOUBLE, MPI_SUM, world);
-  for (int number = 0; number < count(); ++number) pistons[number].other_force += of_grains[number];
-  return pistons;
+  for (int number = 0; number < count(); ++number) pistons_[number].other_force += of_grains[number];
 }
 
 double PfvFaceSources::largest_load() const {

@@ -60,7 +60,8 @@ class PfvFaceSources : protected Pointers {
   /// controls a force along the face's axis. LIGGGHTS moves them by m dv/dt = F + target with
   /// m = target / (vel_max ki). With `forces`: also the force of the grains on them in this step and the
   /// target; collective.
-  std::vector<pfv::Piston> pistons(bool forces) const;
+  void read_pistons(bool forces);
+  const std::vector<pfv::Piston>& pistons() const { return pistons_; }
 
   /// The faces under a servo with a proportional gain: v = kp vel_max (target - F) / target.
   std::vector<PfvServoGain> proportional_gains() const;
@@ -94,6 +95,7 @@ class PfvFaceSources : protected Pointers {
   std::vector<double> begun_;  ///< force along the face's axis that this rank's module held, N
   std::vector<double> positions_;
   std::vector<double> velocities_;
+  std::vector<pfv::Piston> pistons_;
   struct Gliding {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), pivot = Eigen::Vector3d::Zero();
     double spin = 0.0;

@@ -43,7 +43,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   global_freq = 1;
   peratom_flag = 1;
   size_peratom_cols = PfvGrainExchange::returned_width;
-  if (settings_.steps.couple_error) plan_.emplace(*settings_.steps.couple_error);
+  schedule_ = PfvSolveSchedule(settings_.steps.couple_error);
   peratom_freq = 1;
   restart_global = 1;
 }
@@ -153,7 +153,7 @@ const char* FixPfv::other_fluid() const {
 void FixPfv::check_cell() {
   if (cell_.axes() != settings_.box.periodic)
     stop(FLERR, "the periodic sides of the simulation box have changed since this fix was defined; define it anew");
-  const std::string obstacle = cell_.obstacle(adapts() ? 0 : settings_.steps.couple_every, rigid_bodies_);
+  const std::string obstacle = cell_.obstacle(adapts() ? 0 : settings_.steps.couple_every, others_.rigid_bodies);
   if (!obstacle.empty()) stop(FLERR, obstacle);
 }
 
@@ -188,29 +188,10 @@ void FixPfv::check_other_fixes() {
 
 /// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
-  grains_.gather(groups_, needs_forces(), cell_.streaming(since_.cell_rates));
-  bodies_.apply(groups_, settings_.fluid.gravity, grains_);
+  grains_.gather(others_.groups, needs_forces(), cell_.streaming(since_.cell_rates));
+  bodies_.apply(others_.groups, settings_.fluid.gravity, grains_);
   everywhere([&] { faces_.read(); });
-  pistons_ = faces_.pistons(needs_forces());
-}
-
-/// A flow keeps its fluid for life: where gravity or viscosity have changed since the last run,
-/// another one takes over its state, on a network that both build from the same grains.
-void FixPfv::prepare_flow(const pfv::Container& container) {
-  if (flow_ && flow_->fluid().gravity == settings_.fluid.gravity &&
-      flow_->fluid().viscosity == settings_.fluid.viscosity) {
-    flow_->set_container(container);
-    return;
-  }
-  if (flow_) {
-    flow_->set_container(container);
-    flow_->rebuild();
-    flow_->evaluate(grains_.packing(), flow_step());
-    restored_ = flow_->state();
-  }
-  flow_ = pfv::make_flow(container, settings_.fluid, settings_.options, settings_.grid());
-  if (restored_) flow_->set_state(*restored_);
-  restored_.reset();
+  faces_.read_pistons(needs_forces());
 }
 
 /// Between runs anything may be moved or replaced: grains (displace_atoms, set), walls and meshes of the
@@ -219,14 +200,10 @@ void FixPfv::prepare_flow(const pfv::Container& container) {
 void FixPfv::begin_anew_where_moved() {
   int moved = 0;
   on_root([&] {
-    if (!flow_ || !left_) return;
+    if (!flow_.has_left()) return;
     const pfv::Packing packing = grains_.packing();
     faces_.follow_grains(packing.positions, packing.radii);
-    PfvLeftState now = state_of(grains_);
-    moved = !(*left_ == now);
-    if (!moved) return;
-    flow_->rebuild();
-    left_ = std::move(now);
+    moved = flow_.begins_anew(state_of(grains_));
   });
   MPI_Bcast(&moved, 1, MPI_INT, 0, world);
   if (!moved) return;
@@ -245,12 +222,12 @@ void FixPfv::begin_anew_where_moved() {
 /// What the next run compares with. The grains of the last flow step stay as they were gathered.
 void FixPfv::remember_state() {
   PfvGrainExchange now(lmp);
-  now.gather(groups_, false);
+  now.gather(others_.groups, false);
   everywhere([&] { faces_.read(); });
   on_root([&] {
     const pfv::Packing packing = now.packing();
     if (packing.size() > 0) faces_.follow_grains(packing.positions, packing.radii);
-    if (flow_) left_ = state_of(now);
+    flow_.leave(state_of(now));
   });
 }
 
@@ -285,9 +262,9 @@ void FixPfv::setup(int) {
   container_ = current_container();
   // fix deform changes the cell after the last flow step of a run: that is part of the next run's first interval
   // (but a cell that has been changed by hand since a restart file was read begins anew)
-  const bool by_hand = continued_ && !cell_.changes() && since_.steps == 0;
+  const bool by_hand = since_.from_restart_file && !cell_.changes() && since_.steps == 0;
   const bool goes_on = !by_hand && (since_.steps > 0 || (cell_.any() && !since_.face_positions.empty()));
-  continued_ = false;
+  since_.from_restart_file = false;
   if (!goes_on) since_.face_positions = faces_.positions();
   if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
   const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, groupbit, settings_);
@@ -296,7 +273,7 @@ void FixPfv::setup(int) {
     place_faces(container_);
     warn_of_empty_box();
     for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.packing())) warn_of(warning);
-    prepare_flow(container_);
+    flow_.prepare(container_, settings_, grains_.packing(), flow_step());
     check_servos();
     call_flow(flow_step(), false);
     warn_of_gaps(mesh_areas);
@@ -304,10 +281,9 @@ void FixPfv::setup(int) {
     say_what_is_filled();
     if (!goes_on || since_.grains.tags.empty()) since_.grains = grains_.snapshot();
     check_time_step();
-    if (plan_) plan_->restart();
-    left_.reset();
+    flow_.begin_run();
   });
-  next_ = {};
+  schedule_.begin_run();
   if (adapts()) plan_next_solve(1);
   after_flow_call();
   apply_forces();
@@ -316,7 +292,7 @@ void FixPfv::setup(int) {
 void FixPfv::post_force(int) {
   since_.time += update->dt;
   ++since_.steps;
-  ++taken_.steps;
+  schedule_.count_step();
   if (solve_due()) advance();
   apply_forces();
   push_meshes();
@@ -327,7 +303,7 @@ void FixPfv::advance() {
     stop(FLERR, "gravity has changed within a run; change it between runs");
   const int steps = since_.steps;
   since_.steps = 0;
-  ++taken_.solves;
+  schedule_.count_solve();
   if (cell_.any()) since_.cell_rates = cell_.rates_since(since_.face_positions, since_.time);
   read_host();
   container_ = current_container();
@@ -353,19 +329,19 @@ void FixPfv::advance() {
 
 void FixPfv::after_flow_call() {
   on_root([&] {
-    report_.reset();
+    flow_.forget_report();
     files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep);
     if (files_->history_due(update->ntimestep))
-      files_->write_history(history_row(*flow_, report(), update->ntimestep, taken_));
+      files_->write_history(history_row(*flow_, flow_.report(), update->ntimestep, schedule_.taken()));
   });
   grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{},
-                  comm->me == 0 && plan_ ? &plan_->interval().held() : nullptr,
+                  comm->me == 0 ? schedule_.held() : nullptr,
                   per_atom_->array_atom, settings_.steps.couple_error.has_value());
 }
 
 void FixPfv::apply_forces() {
   array_atom = per_atom_->array_atom;  // reallocated when the number of atoms grows
-  const double trend = steps_of_trend();
+  const double trend = schedule_.steps_of_trend(since_.steps);
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit)
       for (int k = 0; k < 3; ++k) {
@@ -380,9 +356,9 @@ void FixPfv::apply_forces() {
 void FixPfv::push_meshes() {
   if (comm->me != 0 || !faces_.any_mesh()) return;
   std::vector<Eigen::Vector3d> forces = flow_->face_forces();
-  if (const double trend = steps_of_trend(); trend != 0.0)
+  if (const double trend = schedule_.steps_of_trend(since_.steps); trend != 0.0)
     for (std::size_t f = 0; f < forces.size(); ++f)
-      forces[f] += trend * plan_->interval().held().face_slope[f];
+      forces[f] += trend * schedule_.held()->face_slope[f];
   faces_.push_meshes(forces);
 }
 
@@ -412,18 +388,11 @@ void FixPfv::write_restart(FILE* file) {
   record.elapsed = since_.time;
   record.last_positions = since_.face_positions;
   record.cell_rates = since_.cell_rates;
-  record.taken = taken_;
+  record.taken = schedule_.taken();
   on_root([&] {
-    if (flow_) {
-      place_faces(container_);
-      flow_->set_container(container_);
-      flow_->rebuild();
-      flow_->evaluate(grains_.packing(), flow_step());
-      record.flow = flow_->state();
-      report_.reset();
-    } else if (restored_) {
-      record.flow = *restored_;
-    }
+    if (flow_) place_faces(container_);
+    if (auto state = flow_.state_on_new_network(container_, grains_.packing(), flow_step()))
+      record.flow = std::move(*state);
     if (settings_.steps.couple_every > 1 || settings_.steps.couple_error || cell_.changes())
       record.last_grains = since_.grains;
     record.written = files_->written();
@@ -438,16 +407,16 @@ void FixPfv::write_restart(FILE* file) {
 void FixPfv::restart(char* bytes) {
   everywhere([&] {
     PfvRestartRecord record = unpack(bytes);
-    continued_ = true;
+    since_.from_restart_file = true;
     since_.steps = record.steps_since_flow;
     since_.time = record.elapsed;
     since_.face_positions = record.last_positions;
     since_.cell_rates = record.cell_rates;
-    taken_ = record.taken;
+    schedule_.go_on_after(record.taken);
     if (!files_) return;  // not rank 0
     since_.grains = std::move(record.last_grains);
-    restored_ = std::move(record.flow);
-    files_->resume(record.step, restored_->time, std::move(record.written));
+    files_->resume(record.step, record.flow.time, std::move(record.written));
+    flow_.begin_with(std::move(record.flow));
   });
 }
 

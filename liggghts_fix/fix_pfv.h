@@ -14,20 +14,19 @@ FixStyle(pfv,FixPfv)
 #include "face_sources.h"
 #include "found_walls.h"
 #include "grain_exchange.h"
-#include "left_state.h"
+#include "kept_flow.h"
 #include "other_fixes.h"
 #include "restart_record.h"
 #include "result_files.h"
+#include "solve_schedule.h"
 #include "unseen_walls.h"
 
 #include "pfv/flow_model.hpp"
-#include "pfv/solve_plan.hpp"
 #include "pfv/time_step.hpp"
 
 #include "fix.h"
 
 #include <memory>
-#include <optional>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -77,7 +76,6 @@ class FixPfv : public Fix {
   void update_bound_numbers();
   void read_host();
   void advance();
-  void prepare_flow(const pfv::Container& container);
   void place_faces(pfv::Container& container);
   void use_mean_velocities_of_faces();
   void move_cell(pfv::Container& container) const;
@@ -100,7 +98,6 @@ class FixPfv : public Fix {
   bool solve_due();
   double gross_motion() const;
   void plan_next_solve(int steps);
-  double steps_of_trend() const;
 
   // time step and coupling
   void bind_coupling();
@@ -117,7 +114,6 @@ class FixPfv : public Fix {
 
   // outputs
   double quantity(int n);
-  const pfv::Report& report();
   void print_phases();
   void print(const std::string& text);
 
@@ -127,32 +123,16 @@ class FixPfv : public Fix {
   PfvPeriodicCell cell_;
   PfvGrainExchange grains_;
   PfvBodies bodies_;
-  PfvGroups groups_;
-  std::string obstacle_;  // to staged and implicit coupling
-  bool rigid_bodies_ = false;
-  std::vector<pfv::Piston> pistons_;
+  PfvOfOthers others_;
   class FixPropertyAtom* per_atom_ = nullptr;
   pfv::Container container_;
 
-  struct SinceSolve {
-    int steps = 0;
-    double time = 0.0;                       // s
-    std::vector<double> face_positions;      // at it
-    std::vector<Eigen::Vector3d> pivots;     // of a container's faces
-    PfvCellRates cell_rates{};               // of a periodic cell, over the interval that ended with it
-    PfvSnapshot grains;                      // at it; rank 0
-  } since_;
-  PfvTaken taken_;
-  bool continued_ = false;  // from a restart file, and no run since
-  pfv::NextSolve next_;  // of `couple_every auto`
+  PfvSinceSolve since_;
+  PfvSolveSchedule schedule_;
 
   // rank 0 only
-  std::unique_ptr<pfv::FlowModel> flow_;
+  PfvKeptFlow flow_;
   std::unique_ptr<PfvResultFiles> files_;
-  std::optional<pfv::FlowState> restored_;
-  std::optional<PfvLeftState> left_;  // by the last run, as far as it is known; none within a run
-  std::optional<pfv::Report> report_;
-  std::optional<pfv::SolvePlan> plan_;
   struct Said {
     bool citation = false;
     bool time_step = false;  // warned of, in this run

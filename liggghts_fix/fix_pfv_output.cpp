@@ -24,24 +24,18 @@ double FixPfv::compute_vector(int n) {
 
 double FixPfv::quantity(int n) {
   switch (n) {
-    case 0: return report().inflow;
-    case 1: return report().outflow;
-    case 2: return report().mass_error;
-    case 3: return report().force_balance_error;
+    case 0: return flow_.report().inflow;
+    case 1: return flow_.report().outflow;
+    case 2: return flow_.report().mass_error;
+    case 3: return flow_.report().force_balance_error;
     case 4: return static_cast<double>(flow_->retriangulations());
-    case 5: return flow_->time_step_limit(grains_.masses(), pistons_, bodies_.rigid());
+    case 5: return flow_->time_step_limit(grains_.masses(), faces_.pistons(), bodies_.rigid());
     case 6: return flow_->mean_pressure();
     case 7: return static_cast<double>(flow_->hidden_or_outside());
     case 8: return static_cast<double>(flow_->stages());
     case 9: return static_cast<double>(since_.steps);
     default: return flow_->strain();
   }
-}
-
-/// One report serves all outputs of a step.
-const pfv::Report& FixPfv::report() {
-  if (!report_) report_ = flow_->report();
-  return *report_;
 }
 
 void FixPfv::post_run() {
@@ -53,15 +47,7 @@ void FixPfv::post_run() {
 
 void FixPfv::print_phases() {
   std::string text = "\nFix pfv (id " + std::string(id) + ") since it began:\n" +
-                     pfv::summary_of(report());
-  if (plan_) {
-    char line[160];
-    std::snprintf(line, sizeof line,
-                  "couple_every auto: solved at %lld of %lld steps, estimated error %.2g %% of the load\n",
-                  static_cast<long long>(taken_.solves), static_cast<long long>(taken_.steps),
-                  100.0 * plan_->interval().largest_error());
-    text += line;
-  }
+                     pfv::summary_of(flow_.report()) + schedule_.summary();
   if (!said_.citation && settings_.model == pfv::Model::pores) text += pfv::citation();
   said_.citation = true;
   print(text);

@@ -16,10 +16,10 @@ bool FixPfv::adapts() const { return settings_.steps.couple_error.has_value(); }
 bool FixPfv::solve_due() {
   if (!adapts()) return since_.steps >= settings_.steps.couple_every;
   const double tolerance = *settings_.steps.couple_error;
-  return since_.steps >= next_.steps ||
+  return since_.steps >= schedule_.next().steps ||
          (!settings_.bindings.empty() &&
           pfv::imposed_values_differ(current_container(), container_, tolerance)) ||
-         (since_.steps >= 2 && next_.has_jumped(gross_motion(), tolerance));
+         (since_.steps >= 2 && schedule_.next().has_jumped(gross_motion(), tolerance));
 }
 
 /// Sum of |v| r² of the flow's grains, m³/s; collective.
@@ -39,18 +39,10 @@ void FixPfv::plan_next_solve(int steps) {
   const double on_meshes = faces_.largest_load();
   const double motion = gross_motion();
   on_root([&] {
-    plan_->take(*flow_, {grains_.packing(), grains_.masses(), pistons_, steps, update->dt, motion,
-                         on_meshes, settings_.options.retriangulation_strain, &bodies_.rigid()});
-    next_ = plan_->next();
+    schedule_.take(*flow_, {grains_.packing(), grains_.masses(), faces_.pistons(), steps, update->dt, motion,
+                           on_meshes, settings_.options.retriangulation_strain, &bodies_.rigid()});
   });
-  double told[] = {static_cast<double>(next_.steps), next_.offset, next_.sensitivity, next_.motion};
-  MPI_Bcast(told, 4, MPI_DOUBLE, 0, world);
-  next_ = {static_cast<int>(told[0]), told[1], told[2], told[3]};
-}
-
-/// Steps from the instant that the loads of the last solve belong to until now; 0 where they are held.
-double FixPfv::steps_of_trend() const {
-  return adapts() && next_.steps > 1 ? next_.offset + since_.steps : 0.0;
+  schedule_.share(world);
 }
 
 }  // namespace LAMMPS_NS

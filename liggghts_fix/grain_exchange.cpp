@@ -5,7 +5,6 @@
 #include "comm.h"
 #include "domain.h"
 
-#include <mpi.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,31 +18,14 @@ constexpr int plain_width = 12;  // tag, place, velocity, radius, mass, spin
 constexpr int loads_width = 7;   // force, torque, inertia
 constexpr int periods_width = 3;
 
-std::vector<int> times(const std::vector<int>& counts, int width) {
-  std::vector<int> scaled(counts);
-  for (int& count : scaled) count *= width;
-  return scaled;
-}
-
 }  // namespace
 
 void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces, const PfvStreaming& streaming) {
   groupbit_ = groups.flow;
   with_forces_ = with_forces;
   periodic_ = PfvPeriodicCell(lmp).any();
-  sent_width_ = plain_width + (with_forces ? loads_width : 0) + (periodic_ ? periods_width : 0);
   pack_mine(groups, streaming);
-
-  counts_.resize(comm->nprocs);
-  offsets_.resize(comm->nprocs);
-  MPI_Gather(&local_count_, 1, MPI_INT, counts_.data(), 1, MPI_INT, 0, world);
-  if (comm->me == 0) {
-    std::exclusive_scan(counts_.begin(), counts_.end(), offsets_.begin(), 0);
-    received_.resize(std::size_t(sent_width_) * (offsets_.back() + counts_.back()));
-  }
-  MPI_Gatherv(local_.data(), sent_width_ * local_count_, MPI_DOUBLE, received_.data(),
-              times(counts_, sent_width_).data(), times(offsets_, sent_width_).data(), MPI_DOUBLE, 0,
-              world);
+  rows_.gather();
   if (comm->me != 0) return;
   sort_by_tag();
   unpack();
@@ -52,36 +34,34 @@ void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces, const P
 void PfvGrainExchange::pack_mine(const PfvGroups& groups, const PfvStreaming& streaming) {
   constexpr double immovable = std::numeric_limits<double>::infinity();
   const PfvPeriodicCell cell(lmp);
-  local_.clear();
+  std::vector<double>& mine =
+      rows_.begin(plain_width + (with_forces_ ? loads_width : 0) + (periodic_ ? periods_width : 0));
   for (int i = 0; i < atom->nlocal; ++i) {
     const int mask = atom->mask[i];
     if (!(mask & groupbit_)) continue;
     const double *x = atom->x[i], *v = atom->v[i], *spin = atom->omega[i];
-    local_.insert(local_.end(), {static_cast<double>(atom->tag[i]), x[0], x[1], x[2], v[0], v[1],
-                                 v[2], atom->radius[i],
-                                 groups.free(mask) ? atom->rmass[i] : immovable, spin[0], spin[1],
-                                 spin[2]});
+    mine.insert(mine.end(), {static_cast<double>(atom->tag[i]), x[0], x[1], x[2], v[0], v[1], v[2], atom->radius[i],
+                             groups.free(mask) ? atom->rmass[i] : immovable, spin[0], spin[1], spin[2]});
     if (mask & streaming.groupbit)
       for (int k = 0; k < 3; ++k)
-        local_[local_.size() - plain_width + 4 + k] += streaming.drift[k] + streaming.rate[k] * (x[k] - streaming.origin[k]);
+        mine[mine.size() - plain_width + 4 + k] += streaming.drift[k] + streaming.rate[k] * (x[k] - streaming.origin[k]);
     if (with_forces_) {
-      local_.insert(local_.end(), atom->f[i], atom->f[i] + 3);
-      local_.insert(local_.end(), atom->torque[i], atom->torque[i] + 3);
-      local_.push_back(groups.free_to_turn(mask)
-                           ? 0.4 * atom->rmass[i] * atom->radius[i] * atom->radius[i]
-                           : immovable);
+      mine.insert(mine.end(), atom->f[i], atom->f[i] + 3);
+      mine.insert(mine.end(), atom->torque[i], atom->torque[i] + 3);
+      mine.push_back(groups.free_to_turn(mask)
+                         ? 0.4 * atom->rmass[i] * atom->radius[i] * atom->radius[i]
+                         : immovable);
     }
     if (!periodic_) continue;
     const Eigen::Vector3d periods = cell.periods(i);
-    local_.insert(local_.end(), periods.begin(), periods.end());
+    mine.insert(mine.end(), periods.begin(), periods.end());
   }
-  local_count_ = static_cast<int>(local_.size()) / sent_width_;
 }
 
 void PfvGrainExchange::sort_by_tag() {
-  const int count = static_cast<int>(received_.size()) / sent_width_;
+  const int count = rows_.count();
   const auto by_tag = [this](int a, int b) {
-    return received_[std::size_t(sent_width_) * a] < received_[std::size_t(sent_width_) * b];
+    return rows_.row(a)[0] < rows_.row(b)[0];
   };
   // atoms change their places in LIGGGHTS' arrays seldom: the last order mostly still holds
   if (static_cast<int>(order_.size()) != count) {
@@ -109,7 +89,7 @@ void PfvGrainExchange::unpack() {
   unwrapped_.resize(3, periodic_ ? count : 0);
   const Eigen::Map<const Eigen::Vector3d> lengths(domain->prd);
   for (int k = 0; k < count; ++k) {
-    const double* row = &received_[std::size_t(sent_width_) * order_[k]];
+    const double* row = rows_.row(order_[k]);
     grains_.ids[k] = static_cast<std::int64_t>(row[0]);
     grains_.positions.col(k) << row[1], row[2], row[3];
     grains_.velocities.col(k) << row[4], row[5], row[6];
@@ -118,7 +98,7 @@ void PfvGrainExchange::unpack() {
     grains_.angular_velocities.col(k) << row[9], row[10], row[11];
     if (periodic_)
       unwrapped_.col(k) = grains_.positions.col(k) +
-                          Eigen::Map<const Eigen::Vector3d>(row + sent_width_ - periods_width).cwiseProduct(lengths);
+                          Eigen::Map<const Eigen::Vector3d>(row + rows_.width() - periods_width).cwiseProduct(lengths);
     if (!with_forces_) continue;
     forces_.col(k) << row[12], row[13], row[14];
     torques_.col(k) << row[15], row[16], row[17];
@@ -162,9 +142,7 @@ void PfvGrainExchange::scatter(const pfv::Forces& forces, const pfv::HeldLoads* 
         Eigen::Map<Eigen::Matrix<double, 6, 1>>{row + returned_width} = held->slope.col(k);
     }
   }
-  std::vector<double> mine(std::size_t(width) * local_count_);
-  MPI_Scatterv(all.data(), times(counts_, width).data(), times(offsets_, width).data(), MPI_DOUBLE,
-               mine.data(), width * local_count_, MPI_DOUBLE, 0, world);
+  const std::vector<double> mine = rows_.scatter(all, width);
   const double* row = mine.data();
   for (int i = 0; i < atom->nlocal; ++i) {
     if (atom->mask[i] & groupbit_) {
@@ -174,10 +152,6 @@ void PfvGrainExchange::scatter(const pfv::Forces& forces, const pfv::HeldLoads* 
       std::fill(per_atom[i], per_atom[i] + width, 0.0);
     }
   }
-}
-
-double PfvGrainExchange::memory_usage() const {
-  return sizeof(double) * static_cast<double>(local_.capacity() + received_.capacity());
 }
 
 }  // namespace LAMMPS_NS

@@ -5,6 +5,7 @@
 
 #include "other_fixes.h"
 #include "periodic_cell.h"
+#include "rank_rows.h"
 
 #include "pfv/flow_model.hpp"
 #include "pfv/packing.hpp"
@@ -24,7 +25,7 @@ struct PfvSnapshot {
 
 class PfvGrainExchange : protected Pointers {
  public:
-  explicit PfvGrainExchange(class LAMMPS* lmp) : Pointers(lmp) {}
+  explicit PfvGrainExchange(class LAMMPS* lmp) : Pointers(lmp), rows_(lmp) {}
 
   /// Collects tag, place, velocity, radius, mass and spin of the flow's grains on rank 0, on demand with
   /// the force and torque that act on them so far; collective. They are sorted by tag there, so that the flow
@@ -69,7 +70,7 @@ class PfvGrainExchange : protected Pointers {
                bool with_slopes);
   static constexpr int returned_width = 7, width_with_slopes = 13;
 
-  double memory_usage() const;
+  double memory_usage() const { return rows_.memory_usage(); }
 
  private:
   void pack_mine(const PfvGroups& groups, const PfvStreaming& streaming);
@@ -78,11 +79,8 @@ class PfvGrainExchange : protected Pointers {
 
   int groupbit_ = 0;
   bool with_forces_ = false, periodic_ = false;
-  int sent_width_ = 0;  // numbers a grain
-  int local_count_ = 0;
-  std::vector<double> local_, received_;
-  std::vector<int> counts_, offsets_;  // grains of each rank
-  std::vector<int> order_;             // received row of each sorted grain
+  PfvRankRows rows_;
+  std::vector<int> order_;  // received row of each sorted grain
 
   pfv::PackingArrays grains_;
   Eigen::VectorXd masses_, inertias_;

@@ -71,6 +71,10 @@ PfvGroups PfvOtherFixes::groups() const {
   return groups;
 }
 
+PfvOfOthers PfvOtherFixes::seen(bool long_steps) const {
+  return {groups(), rigid_bodies(), long_steps ? obstacle_to_long_steps() : std::string()};
+}
+
 std::string PfvOtherFixes::obstacle_to_long_steps() const {
   bool later = false;
   for (int i = 0; i < modify->nfix; ++i) {

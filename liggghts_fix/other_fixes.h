@@ -21,6 +21,13 @@ struct PfvGroups {
   bool free_to_turn(int mask) const { return (mask & turned) && !(mask & held); }
 };
 
+/// What the other fixes mean for the flow.
+struct PfvOfOthers {
+  PfvGroups groups;
+  bool rigid_bodies = false;  ///< grains of the flow are parts of some
+  std::string obstacle;       ///< why it cannot be staged or implicit, with what to do about it; or empty
+};
+
 /// "fix STYLE 'ID'", for messages.
 std::string name_of(const class Fix& fix);
 
@@ -28,18 +35,19 @@ class PfvOtherFixes : protected Pointers {
  public:
   PfvOtherFixes(class LAMMPS* lmp, const class Fix& flow) : Pointers(lmp), flow_(flow) {}
 
-  PfvGroups groups() const;
+  /// `long_steps`: whether obstacles to staged and implicit steps are asked for. Collective.
+  PfvOfOthers seen(bool long_steps) const;
 
+  bool share_grains_with(const class Fix& other) const;  ///< collective
+
+ private:
+  PfvGroups groups() const;
   /// Why the flow cannot be staged or implicit among these fixes, with what to do about it; empty where
   /// it can. Such a step has to know each force that acts beside the fluid's over it. Collective.
   std::string obstacle_to_long_steps() const;
 
   /// Whether grains of the flow are parts of rigid bodies; collective.
   bool rigid_bodies() const;
-
-  bool share_grains_with(const class Fix& other) const;  ///< collective
-
- private:
   bool moves_bodies_of_flow(const class Fix& fix) const;  ///< collective
 
   const class Fix& flow_;

@@ -11,17 +11,11 @@
 namespace LAMMPS_NS {
 
 void FixPfv::bind_coupling() {
-  const PfvOtherFixes others(lmp, *this);
-  groups_ = others.groups();
-  rigid_bodies_ = others.rigid_bodies();
-  obstacle_.clear();
-  if (!needs_forces()) return;
-  obstacle_ = settings_.steps.couple_every > 1
-                  ? "staged and implicit coupling need `couple_every 1`; they integrate the drag over "
-                    "each step"
-                  : others.obstacle_to_long_steps();
-  if (settings_.steps.coupling != pfv::Coupling::automatic && !obstacle_.empty())
-    stop(FLERR, obstacle_);
+  others_ = PfvOtherFixes(lmp, *this).seen(needs_forces());
+  if (needs_forces() && settings_.steps.couple_every > 1)
+    others_.obstacle = "staged and implicit coupling need `couple_every 1`; they integrate the drag over each step";
+  if (settings_.steps.coupling != pfv::Coupling::automatic && !others_.obstacle.empty())
+    stop(FLERR, others_.obstacle);
 }
 
 /// Whether the flow may have to know the forces that act beside its own.
@@ -32,8 +26,8 @@ double FixPfv::flow_step() const { return settings_.steps.couple_every * update-
 /// One call of the flow, over `dt` (s); rank 0.
 void FixPfv::call_flow(double dt, bool commit) {
   const pfv::GrainDynamics dynamics =
-      needs_forces() ? grains_.dynamics(pistons_, bodies_.rigid()) : pfv::GrainDynamics{};
-  const std::string& obstacle = obstacle_.empty() && needs_forces() ? bodies_.obstacle() : obstacle_;
+      needs_forces() ? grains_.dynamics(faces_.pistons(), bodies_.rigid()) : pfv::GrainDynamics{};
+  const std::string& obstacle = others_.obstacle.empty() && needs_forces() ? bodies_.obstacle() : others_.obstacle;
   if (settings_.steps.coupling != pfv::Coupling::automatic && !obstacle.empty()) throw pfv::InputError(obstacle);
   flow_->advance(grains_.packing(), dt,
                  {settings_.steps.coupling, needs_forces() ? &dynamics : nullptr, commit,
@@ -43,7 +37,7 @@ void FixPfv::call_flow(double dt, bool commit) {
 /// Where the time step stands now; its warnings, once a run. Rank 0.
 pfv::TimeStepCheck FixPfv::look_at_time_step() {
   const pfv::TimeStepCheck check = pfv::check_time_step(*flow_, grains_.packing(), grains_.masses(),
-                                                        pistons_, flow_step(), bodies_.rigid());
+                                                        faces_.pistons(), flow_step(), bodies_.rigid());
   said_.network = flow_->retriangulations();
   const char* remedy = ", `coupling staged` or `coupling implicit`";
   const std::vector<std::string> warnings =

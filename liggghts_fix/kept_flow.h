@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The flow of rank 0 from run to run: a new fluid, a restart file, what was moved by hand between runs.
+#ifndef LMP_PFV_KEPT_FLOW_H
+#define LMP_PFV_KEPT_FLOW_H
+
+#include "arguments.h"
+#include "left_state.h"
+
+#include "pfv/flow_model.hpp"
+
+#include <memory>
+#include <optional>
+
+namespace LAMMPS_NS {
+
+class PfvKeptFlow {
+ public:
+  explicit operator bool() const { return model_ != nullptr; }
+  pfv::FlowModel& operator*() const { return *model_; }
+  pfv::FlowModel* operator->() const { return model_.get(); }
+  pfv::FlowModel* get() const { return model_.get(); }
+
+  /// A flow keeps its fluid for life: where gravity or viscosity have changed since the last run, another one takes
+  /// over its state, on a network that both build from the same grains. `dt`: s, of a flow step.
+  void prepare(const pfv::Container& container, const PfvSettings& settings, const pfv::Packing& grains, double dt);
+  /// What the next flow begins with: that of a restart file.
+  void begin_with(pfv::FlowState state) { restored_ = std::move(state); }
+  /// The state from which this run and one from a restart file go on alike: the network is built anew from the
+  /// grains. None before the first run, but where a restart file has been read.
+  std::optional<pfv::FlowState> state_on_new_network(const pfv::Container& container, const pfv::Packing& grains,
+                                                     double dt);
+
+  /// A run ends with grains and faces in this state ...
+  void leave(PfvLeftState state);
+  /// ... the next one finds them in another, or not: then the network begins anew.
+  bool begins_anew(PfvLeftState found);
+  bool has_left() const { return left_.has_value(); }
+  void begin_run() { left_.reset(); }
+
+  /// One report serves all outputs of a step.
+  const pfv::Report& report();
+  void forget_report() { report_.reset(); }
+
+ private:
+  std::unique_ptr<pfv::FlowModel> model_;
+  std::optional<pfv::FlowState> restored_;
+  std::optional<PfvLeftState> left_;  // by the last run, as far as it is known; none within a run
+  std::optional<pfv::Report> report_;
+};
+
+}  // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve_schedule.h"
+
+#include <cstdio>
+
+namespace LAMMPS_NS {
+
+void PfvSolveSchedule::begin_run() {
+  next_ = {};
+  if (plan_) plan_->restart();
+}
+
+void PfvSolveSchedule::take(pfv::FlowModel& flow, const pfv::SolvedInstant& now) {
+  plan_->take(flow, now);
+  next_ = plan_->next();
+}
+
+void PfvSolveSchedule::share(MPI_Comm world) {
+  double told[] = {static_cast<double>(next_.steps), next_.offset, next_.sensitivity, next_.motion};
+  MPI_Bcast(told, 4, MPI_DOUBLE, 0, world);
+  next_ = {static_cast<int>(told[0]), told[1], told[2], told[3]};
+}
+
+std::string PfvSolveSchedule::summary() const {
+  if (!plan_) return {};
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "couple_every auto: solved at %lld of %lld steps, estimated error %.2g %% of the load\n",
+                static_cast<long long>(taken_.solves), static_cast<long long>(taken_.steps),
+                100.0 * plan_->interval().largest_error());
+  return line;
+}
+
+}  // namespace LAMMPS_NS
