@@ -169,7 +169,7 @@ def analyse(folder, settings, runs):
              ("first grain out after, s", "first_out", "{:.3g}"),
              ("balance of forces, at first", "force_balance_error_first", "{:.1e}"),
              ("largest", "force_balance_error_max", "{:.1e}"),
-             ("networks or looks at the porosity", "rebuilt", "{:d}"), ("CPU seconds", "cpu",
+             ("networks or renewals of the porosity", "rebuilt", "{:d}"), ("CPU seconds", "cpu",
              "{:.1f}")]
     print(f"  {'':36s}" + "".join(f"{run['model']:>14s}" for run in runs))
     for title, key, form in lines:

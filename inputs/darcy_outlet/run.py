@@ -18,7 +18,7 @@ KEYS = {
     "MODEL": (str, "both", "pfv, darcy_grid or both"),
     "ACROSS": (int, 10, "grains across the box; 20 as in the example"),
     "TIME": (float, 1.0, "simulated time, s"),
-    "EVERY": (int, 100, "steps between two looks at the porosity, darcy_grid"),
+    "EVERY": (int, 100, "steps between two renewals of the porosity, darcy_grid"),
     "PFV": (str, "", "further words of fix pfv for the pores, as 'couple_every 10 retriangulate 0.05'"),
     "COUPLE": (int, 10, "time steps between two flow steps, darcy_grid"),
     "DRAG": (str, "di_felice", "di_felice or kozeny_carman, darcy_grid"),
@@ -51,8 +51,8 @@ def run_model(model, settings):
     words = f"pfv {settings['PFV']}"
     if model == "darcy_grid":
         cells = " ".join(map(str, CELLS))
-        looks = max(1, settings["EVERY"] // settings["COUPLE"])  # of fix pfv: in flow steps
-        words = f"darcy_grid {cells} every {looks} drag {settings['DRAG']} couple_every {settings['COUPLE']}"
+        every = max(1, settings["EVERY"] // settings["COUPLE"])  # of fix pfv: in flow steps
+        words = f"darcy_grid {cells} every {every} drag {settings['DRAG']} couple_every {settings['COUPLE']}"
     step = time_step(settings["ACROSS"])
     steps = 100 * max(1, round(settings["TIME"] / step / 100))
     out = f"{settings['OUT']}_{model}"

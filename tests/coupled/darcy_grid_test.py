@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`model darcy_grid` of the fix: forces, looks at the porosity, files, restart, refusals."""
+"""`model darcy_grid` of the fix: forces, renewals of the porosity, files, restart, refusals."""
 import unittest
 
 from coupled import FLOW, CoupledTest, dump, forces, largest_difference, packing
@@ -37,7 +37,7 @@ class DarcyGrid(CoupledTest):
         self.liggghts(f"{HEAD}{GRID}\n{THERMO}run 0\n")
         self.assertNotEqual(still[0]["flow[1]"], self.rows()[0]["flow[1]"])
 
-    def test_the_porosity_is_looked_at_every_n_steps_and_the_balance_holds(self):
+    def test_the_porosity_is_renewed_every_n_steps_and_the_balance_holds(self):
         self.liggghts(f"{HEAD}{GRID} every 4\n{THERMO}run 12\n")
         rows = self.rows()
         # the setup takes no step: steps 1-4, 5-8 and 9-12 see one porosity each

@@ -86,9 +86,9 @@ TEST(PlugFlow, IsTheLimitOfTheFlowPastSlowerGrains) {
   pfv::Flow flow(plug_box(), viscosity_one());
   flow.evaluate(plug(0.0).view());
   const double at_rest = flow.mean_pressure();
-  for (const double lag : {1e-2, 1e-5, 1e-8}) {
-    flow.evaluate(plug(1.0 - lag).view());
-    EXPECT_NEAR(flow.mean_pressure() / (lag * at_rest), 1.0, 1e-14 + 1e-15 / lag);
+  for (const double slower : {1e-2, 1e-5, 1e-8}) {
+    flow.evaluate(plug(1.0 - slower).view());
+    EXPECT_NEAR(flow.mean_pressure() / (slower * at_rest), 1.0, 1e-14 + 1e-15 / slower);
   }
 }
 

@@ -38,7 +38,7 @@ const Forces& DarcyData::compute(const Packing& packing, double at_time, bool ad
   {
     const PhaseClock clock(work.seconds.total);
     solved = false;
-    if (needs_look(packing)) look(packing);
+    if (needs_renewal(packing)) renew(packing);
     Eigen::Matrix3Xd velocities;
     gather_velocities(packing, built->grains.columns, velocities);
     last.moving = grid_options.grain_motion && !at_rest(packing, box);
@@ -55,7 +55,7 @@ const Forces& DarcyData::compute(const Packing& packing, double at_time, bool ad
     last.box = box;
     solved = true;
     time = at_time;
-    if (advance) ++steps_since_look;
+    if (advance) ++steps_since_renewal;
   }
   work.wall_seconds.total += wall_seconds() - wall_start;
   return forces;
@@ -67,14 +67,14 @@ void DarcyData::require_result() const {
                      "failed, or there was none)");
 }
 
-bool DarcyData::needs_look(const Packing& packing) const {
-  if (stale || !built || steps_since_look >= grid_options.refresh_every) return true;
+bool DarcyData::needs_renewal(const Packing& packing) const {
+  if (stale || !built || steps_since_renewal >= grid_options.refresh_every) return true;
   if (!same_grains(packing, box, packing_ids, built->grains.columns)) return true;
-  return !packing.velocities.allFinite();  // leads to a look, whose checks name the sphere
+  return !packing.velocities.allFinite();  // leads to a renewal, whose checks name the sphere
 }
 
 /// Porosity, permeability and the factor from the grains as they are now.
-void DarcyData::look(const Packing& packing) {
+void DarcyData::renew(const Packing& packing) {
   check(box);
   auto fresh = std::make_unique<BuiltGrid>();
   {
@@ -95,14 +95,14 @@ void DarcyData::look(const Packing& packing) {
   fresh->permeability = fresh->porosity.unaryExpr(
       [&](double porosity) { return kozeny_carman(porosity, diameter); });
   fresh->mobility = fresh->permeability / fluid.viscosity;
-  if (built) ++looks;
+  if (built) ++renewals;
   built = std::move(fresh);
   packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
   last.cells.porosity = built->porosity;
   last.cells.permeability = built->permeability;
   factor();
   stale = false;
-  steps_since_look = 0;
+  steps_since_renewal = 0;
 }
 
 void DarcyData::factor() {

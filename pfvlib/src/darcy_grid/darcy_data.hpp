@@ -52,9 +52,9 @@ struct DarcyData {
   std::vector<std::int64_t> packing_ids;
   std::unique_ptr<LinearSolver> solver;  ///< its ordering serves every renewal of the porosity
   bool stale = true;
-  int steps_since_look = 0;
+  int steps_since_renewal = 0;
   double time = 0.0;
-  std::int64_t looks = 0;  ///< after the first
+  std::int64_t renewals = 0;  ///< after the first
   WorkRecord work;
 
   // of the last call
@@ -67,8 +67,8 @@ struct DarcyData {
   void require_result() const;
 
  private:
-  bool needs_look(const Packing& packing) const;
-  void look(const Packing& packing);
+  bool needs_renewal(const Packing& packing) const;
+  void renew(const Packing& packing);
   void factor();
   void update_rates();
   void refuse_undetermined() const;

@@ -73,11 +73,11 @@ const Fluid& DarcyGrid::fluid() const { return data_->fluid; }
 const DarcyOptions& DarcyGrid::grid() const { return data_->grid_options; }
 double DarcyGrid::time() const { return data_->time; }
 
-FlowState DarcyGrid::state() const { return {data_->time, 0.0, data_->looks, {}, 0.0, 0.0, 0.0}; }
+FlowState DarcyGrid::state() const { return {data_->time, 0.0, data_->renewals, {}, 0.0, 0.0, 0.0}; }
 
 void DarcyGrid::set_state(FlowState state) {
   data_->time = state.time;
-  data_->looks = state.retriangulations;
+  data_->renewals = state.retriangulations;
 }
 
 const Forces& DarcyGrid::forces() const {
@@ -140,7 +140,7 @@ double DarcyGrid::time_step_limit(const Eigen::VectorXd& masses, const std::vect
   return data_->time_step_limit(masses, pistons);
 }
 
-std::int64_t DarcyGrid::retriangulations() const { return data_->looks; }
+std::int64_t DarcyGrid::retriangulations() const { return data_->renewals; }
 
 std::int64_t DarcyGrid::hidden_or_outside() const {
   data_->require_result();
