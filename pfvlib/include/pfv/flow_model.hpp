@@ -63,7 +63,7 @@ struct GrainDynamics {
   Eigen::Map<const Eigen::VectorXd> masses{nullptr, 0};  ///< kg, > 0; infinite: a grain whose velocity
                                                          ///< is prescribed (frozen, moved by force)
   Eigen::Map<const Eigen::Matrix3Xd> other_forces{nullptr, 3, 0};  ///< N: contacts, gravity, ...
-  std::vector<Piston> pistons;  ///< in the order of the faces; none: all velocities are prescribed
+  std::vector<Piston> pistons{};  ///< in the order of the faces; none: all velocities are prescribed
   Eigen::Map<const Eigen::Matrix3Xd> other_torques{nullptr, 3, 0};  ///< N m; empty: none
   Eigen::Map<const Eigen::VectorXd> inertias{nullptr, 0};  ///< kg m²; empty: 2/5 m r²; infinite: a grain that
                                                            ///< keeps its spin
