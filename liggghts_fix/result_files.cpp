@@ -170,15 +170,12 @@ Eigen::Matrix3Xd PfvResultFiles::displacements(const pfv::Packing& packing, cons
   return moved;
 }
 
-/// Velocities and stresses where the model has pores.
-pfv::SphereFields PfvResultFiles::sphere_fields(const pfv::FlowModel& flow,
-                                                const pfv::Packing& packing,
-                                                const Eigen::Matrix3Xd& unwrapped) {
-  pfv::SphereFields fields{displacements(packing, unwrapped), {}, {}};
-  if (const auto* pores = dynamic_cast<const pfv::Flow*>(&flow)) {
-    fields.fluid_velocity = pores->sphere_velocities();
-    fields.fluid_stress = pores->sphere_stresses();
-  }
+/// Displacements, and what the model with pores knows of each sphere.
+std::vector<pfv::Field> PfvResultFiles::sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
+                                                      const Eigen::Matrix3Xd& unwrapped) {
+  std::vector<pfv::Field> fields{{"displacement", displacements(packing, unwrapped)}};
+  if (const auto* pores = dynamic_cast<const pfv::Flow*>(&flow))
+    for (pfv::Field& field : pores->sphere_fields()) fields.push_back(std::move(field));
   return fields;
 }
 

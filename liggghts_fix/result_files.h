@@ -80,8 +80,8 @@ class PfvResultFiles {
   PfvNamedRow profile_row(const pfv::FlowModel& flow) const;
   PfvNamedRow flux_row(const pfv::FlowModel& flow) const;
   PfvNamedRow sensor_row(const pfv::FlowModel& flow) const;
-  pfv::SphereFields sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                                  const Eigen::Matrix3Xd& unwrapped);
+  std::vector<pfv::Field> sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
+                                        const Eigen::Matrix3Xd& unwrapped);
   Eigen::Matrix3Xd displacements(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped);
 
   std::optional<PfvFieldOutput> fields_;

@@ -143,6 +143,11 @@ void add_velocities(py::class_<FlowHost>& flow) {
            "The same around each sphere, N x 3, m/s; 0 for hidden and left-out ones.");
   flow.def("sphere_stresses", copied<Flow>([](Flow& f) { return f.sphere_stresses(); }),
            "Mean stress that the fluid causes in each sphere, N x 6: xx, yy, zz, xy, xz, yz, Pa, tension positive.");
+  flow.def("sphere_fields", [](FlowHost& host) {
+             return arrays_of(host.ask_of<Flow>([](Flow& f) { return f.sphere_fields(); }));
+           }, R"({name: values} of all fields of the spheres, N or N x 3 or N x 6, as the files of grains have them.
+
+Tensors in VTK's order: xx, yy, zz, xy, yz, xz. Cost: as `faces`, and a pass over cells and facets.)");
   flow.def("viscosity_matrices", [](FlowHost& host, const std::vector<int>& rows) {
              return array_of(host.ask_of<Flow>([&rows](Flow& f) { return f.viscosity_matrices(rows); }));
            }, "rows"_a, R"(Drag of each of these spheres moving alone: the force on it is -V v. n x 3 x 3, N s/m.

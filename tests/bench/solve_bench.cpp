@@ -172,7 +172,7 @@ int main(int argc, char** argv) {
     for (const OrderingKind ordering :
          {OrderingKind::geometric, OrderingKind::metis, OrderingKind::amd})
       add({solver, ordering}, 20000);
-  if (abilities_of(SolverKind::mumps).is_built)
+  if (is_built(SolverKind::mumps))
     add({SolverKind::mumps, OrderingKind::automatic}, 20000);
   add({SolverKind::klu2, OrderingKind::automatic}, 5000);  // a minute at 20000
   add({SolverKind::amg, OrderingKind::automatic}, 20000);

@@ -35,7 +35,7 @@ std::vector<SolverKind> direct_solvers() {
   std::vector<SolverKind> found;
   for (const SolverKind kind : {SolverKind::supernodal, SolverKind::cholmod, SolverKind::tacho,
                                 SolverKind::klu2, SolverKind::mumps})
-    if (abilities_of(kind).is_built) found.push_back(kind);
+    if (is_built(kind)) found.push_back(kind);
   return found;
 }
 

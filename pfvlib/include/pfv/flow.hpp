@@ -109,6 +109,9 @@ class Flow final : public FlowModel {
   /// Mean stress (Pa, tension positive) that the fluid's tractions cause in each sphere, rows xx, yy, zz,
   /// xy, xz, yz: in an even pressure p it is -p, -p, -p, 0, 0, 0. 6 x N; 0 for hidden and left-out ones.
   Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_stresses() const;
+  /// These and all others that a sphere has, by name, a column a sphere of the packing: `fluid_velocity` (m/s),
+  /// `fluid_stress` (Pa, in the order of Field). Cost: as faces() and a pass over cells and facets.
+  std::vector<Field> sphere_fields() const;
   /// Flow rate (m³/s, positive along the axis) between the pores on either side of a plane. In a steady flow
   /// with sealed sides it is the same for every plane. Throws InputError for a plane outside the box.
   double plane_flux(int axis, double position) const;

@@ -41,16 +41,10 @@ std::string summary_of(const Report& report);
 /// The papers to cite for the pore network.
 const char* citation();
 
-/// Further fields of spheres, one column a sphere of the packing; an empty one is not written.
-struct SphereFields {
-  Eigen::Matrix3Xd displacement;    ///< m
-  Eigen::Matrix3Xd fluid_velocity;  ///< m/s
-  Eigen::Matrix<double, 6, Eigen::Dynamic> fluid_stress;  ///< Pa: xx, yy, zz, xy, xz, yz
-};
-
-/// Spheres as points of a .vtu: id, radius, force, velocity, mean pressure around each and `more`.
+/// Spheres as points of a .vtu: id, radius, velocity, force, mean pressure around each and `more`, one column a sphere
+/// of the packing; a field without columns is not written.
 void write_spheres(const std::string& path, const Packing& packing, const Forces& forces,
-                   const SphereFields& more = {});
+                   const std::vector<Field>& more = {});
 
 /// The spheres and places that an error is about as points of a .vtu: id (-1 for a place) and radius (0).
 void write_culprits(const std::string& path, const Packing& packing, const Culprits& culprits);

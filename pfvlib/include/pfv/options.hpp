@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pfv/names.hpp"
+#include "pfv/solvers.hpp"
 
 #include <optional>
 
@@ -18,40 +19,6 @@ struct Names<ConductanceLaw> {
       {{ConductanceLaw::hydraulic_radius, "hydraulic_radius"},
        {ConductanceLaw::effective_radius, "effective_radius"},
        {ConductanceLaw::open_throat, "open_throat"}}};
-};
-
-/// Direct solvers behind Amesos2: supernodal (`automatic`), CHOLMOD's symbolic factorisation with numeric
-/// one and solves of this library; cholmod, CHOLMOD's own; tacho, Trilinos' sparse Cholesky; klu2, its plain
-/// sparse LU; mumps (unless CMake's PFV_WITH_MUMPS is off). Iterative ones: amg, conjugate gradients with
-/// hypre's algebraic multigrid; cg, with incomplete Cholesky; gauss_seidel with over-relaxation.
-enum class SolverKind { automatic, supernodal, cholmod, tacho, klu2, mumps, amg, cg, gauss_seidel };
-template <>
-struct Names<SolverKind> {
-  static constexpr const char* what = "solver";
-  static constexpr std::array<Named<SolverKind>, 9> all{
-      {{SolverKind::automatic, "auto"},
-       {SolverKind::supernodal, "supernodal"},
-       {SolverKind::cholmod, "cholmod"},
-       {SolverKind::tacho, "tacho"},
-       {SolverKind::klu2, "klu2"},
-       {SolverKind::mumps, "mumps"},
-       {SolverKind::amg, "amg"},
-       {SolverKind::cg, "cg"},
-       {SolverKind::gauss_seidel, "gauss_seidel"}}};
-};
-
-/// Fill-reducing ordering: nested dissection of the pore centres in space (`automatic`) or of the
-/// graph by METIS (tacho's `automatic`), or minimum degree: of supernodal, cholmod and tacho. The other
-/// solvers order themselves or not at all and refuse a choice (klu2 takes amd, its own).
-enum class OrderingKind { automatic, geometric, metis, amd };
-template <>
-struct Names<OrderingKind> {
-  static constexpr const char* what = "ordering";
-  static constexpr std::array<Named<OrderingKind>, 4> all{
-      {{OrderingKind::automatic, "auto"},
-       {OrderingKind::geometric, "geometric"},
-       {OrderingKind::metis, "metis"},
-       {OrderingKind::amd, "amd"}}};
 };
 
 /// How supernodal keeps its factor. `full`: in double precision. `mixed`: in single precision, half of what a

@@ -5,6 +5,7 @@
 #include "results/averages.hpp"
 #include "results/network_fields.hpp"
 #include "results/network_report.hpp"
+#include "results/sphere_fields.hpp"
 #include "results/viscosity_matrices.hpp"
 #include "step/forces.hpp"
 
@@ -95,6 +96,10 @@ Eigen::Matrix3Xd Flow::sphere_velocities() const {
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_stresses() const {
   return pfv::sphere_stresses(parts_->network(), parts_->solution, parts_->keeper.packed());
+}
+
+std::vector<Field> Flow::sphere_fields() const {
+  return pfv::sphere_fields({parts_->network(), parts_->solution, parts_->balance(), parts_->keeper.packed()});
 }
 
 double Flow::plane_flux(int axis, double position) const {

@@ -67,7 +67,7 @@ void write_fields(const std::string& path, const FieldGrid& grid) {
 }
 
 void write_spheres(const std::string& path, const Packing& packing, const Forces& forces,
-                   const SphereFields& more) {
+                   const std::vector<Field>& more) {
   const Eigen::Index n = packing.size();
   FieldGrid grid;
   grid.points = packing.positions;
@@ -78,16 +78,12 @@ void write_spheres(const std::string& path, const Packing& packing, const Forces
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(3, n);
   if (packing.velocities.cols() == n) velocities = packing.velocities;
   grid.of_points.push_back({"velocity", velocities});
-  const auto add_known = [&](const char* name, const Eigen::MatrixXd& values) {
+  const auto add_known = [&](const std::string& name, const Eigen::MatrixXd& values) {
     if (values.cols() == n) grid.of_points.push_back({name, values});
   };
   add_known("force", forces.total);
   add_known("pressure", forces.sphere_pressure.transpose());
-  add_known("displacement", more.displacement);
-  add_known("fluid_velocity", more.fluid_velocity);
-  Eigen::MatrixXd in_vtk_order = more.fluid_stress;  // ... xy, yz, xz
-  in_vtk_order.row(4).swap(in_vtk_order.row(5));
-  add_known("fluid_stress", in_vtk_order);
+  for (const Field& field : more) add_known(field.name, field.values);
   write_fields(path, grid);
 }
 

@@ -18,28 +18,7 @@ constexpr bool has_mumps = true;
 constexpr bool has_mumps = false;
 #endif
 
-using Solver = SolverKind;
 using Ordering = OrderingKind;
-
-// Not in the background: what calls the BLAS, which two threads at once may not (Debian's
-// openblas-serial returns wrong factors), what stays inside Trilinos, which is one thread's at a time, and what
-// calls MPI (mumps, amg), which a host may have started for one thread.
-constexpr SolverAbilities table[] = {
-    // solver, built, analysed, factored, solved by; own ordering; takes orderings, shares work,
-    // factors beside steps, mixed precision, implicit steps, iterative, tolerance
-    {Solver::supernodal, true, "CHOLMOD", "pfv", "pfv", Ordering::geometric, true, true, true, true, true, false, 0.0},
-    {Solver::cholmod, true, "CHOLMOD", "CHOLMOD", "CHOLMOD", Ordering::geometric, true, false, false, false, false,
-     false, 0.0},
-    {Solver::tacho, true, "Tacho", "Tacho", "Tacho", Ordering::metis, true, false, false, false, false, false, 0.0},
-    {Solver::klu2, true, "KLU2", "KLU2", "KLU2", Ordering::amd, false, false, false, false, false, false, 0.0},
-    {Solver::mumps, has_mumps, "MUMPS", "MUMPS", "MUMPS", Ordering::automatic, false, false, false, false, false,
-     false, 0.0},
-    {Solver::amg, true, nullptr, "hypre's BoomerAMG", "pfv", Ordering::automatic, false, false, false, false, false,
-     true, 1e-7},
-    {Solver::cg, true, nullptr, "pfv", "pfv", Ordering::automatic, false, false, true, false, false, true, 1e-10},
-    {Solver::gauss_seidel, true, nullptr, nullptr, "pfv", Ordering::automatic, false, false, true, false, false, true,
-     1e-10},
-};
 
 /// Who makes an ordering for a solver.
 std::string orderer(const SolverAbilities& solver, OrderingKind ordering) {
@@ -51,14 +30,16 @@ std::string orderer(const SolverAbilities& solver, OrderingKind ordering) {
 }  // namespace
 
 const SolverAbilities& abilities_of(SolverKind solver) {
-  for (const SolverAbilities& candidate : table)
-    if (candidate.solver == resolved(solver)) return candidate;
+  for (const SolverAbilities& candidate : Names<SolverKind>::all)
+    if (candidate.value == resolved(solver)) return candidate;
   throw InputError("unknown solver number " + std::to_string(static_cast<int>(solver)) +
                    ": use one that options.hpp names");
 }
 
+bool is_built(SolverKind solver) { return solver != SolverKind::mumps || has_mumps; }
+
 SolverKind resolved(SolverKind solver) {
-  return solver == Solver::automatic ? Solver::supernodal : solver;
+  return solver == SolverKind::automatic ? SolverKind::supernodal : solver;
 }
 
 OrderingKind resolved(SolverKind solver, OrderingKind ordering) {
@@ -69,8 +50,8 @@ bool is_iterative(SolverKind solver) { return abilities_of(solver).is_iterative;
 
 std::string solvers_with(bool SolverAbilities::*ability) {
   std::vector<std::string> names;
-  for (const SolverAbilities& solver : table)
-    if (solver.is_built && solver.*ability) names.push_back(name_of(solver.solver));
+  for (const SolverAbilities& solver : Names<SolverKind>::all)
+    if (is_built(solver.value) && solver.*ability) names.push_back(solver.name);
   std::string text;
   for (std::size_t k = 0; k < names.size(); ++k)
     text += (k == 0 ? "" : k + 1 == names.size() ? " or " : ", ") + names[k];
@@ -79,10 +60,10 @@ std::string solvers_with(bool SolverAbilities::*ability) {
 
 std::string own_tolerances() {
   std::map<double, std::string, std::greater<>> solvers;
-  for (const SolverAbilities& solver : table) {
+  for (const SolverAbilities& solver : Names<SolverKind>::all) {
     if (!solver.is_iterative) continue;
     std::string& names = solvers[solver.tolerance];
-    names += (names.empty() ? "" : ", ") + std::string(name_of(solver.solver));
+    names += (names.empty() ? "" : ", ") + std::string(solver.name);
   }
   std::string text;
   for (const auto& [tolerance, names] : solvers)
@@ -92,8 +73,8 @@ std::string own_tolerances() {
 
 void check(SolverKind kind, OrderingKind ordering) {
   const SolverAbilities& solver = abilities_of(kind);
-  const std::string name = name_of(solver.solver);
-  if (!solver.is_built)
+  const std::string name = solver.name;
+  if (!is_built(solver.value))
     throw InputError("this build has no solver " + name +
                      "; configure it with -DPFV_WITH_MUMPS=ON, or use another solver");
   if (solver.takes_orderings || ordering == Ordering::automatic || ordering == solver.own_ordering)

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // With tacho_cholesky.cpp the only translation unit that includes Trilinos.
-#include "solve/amesos2_solver.hpp"
-
 #ifdef PFV_WITH_MUMPS
 // Debian's Amesos2 holds the MUMPS adapter, but its configuration does not say so.
 #include <Amesos2_config.h>
@@ -102,27 +100,17 @@ Teuchos::RCP<Matrix> tpetra_pattern(const SymmetricMatrix& matrix,
   return Teuchos::rcp(new Matrix(local, map, map, map, map));
 }
 
-/// Null for the solvers that Amesos2 has itself.
-std::shared_ptr<CholeskyFactor> cholesky_factor(SolverKind solver, Precision precision) {
-  switch (solver) {
-    case SolverKind::supernodal: return make_supernodal_cholesky(precision);
-    case SolverKind::cholmod: return make_cholmod_cholesky();
-    case SolverKind::tacho: return make_tacho_cholesky();
-    default: return nullptr;
-  }
-}
-
 class Amesos2Solver final : public CheckedSolver {
  public:
-  Amesos2Solver(SolverKind solver, OrderingKind ordering, Precision precision,
+  Amesos2Solver(SolverKind solver, const Options& options, std::shared_ptr<CholeskyFactor> factor,
                 std::shared_ptr<Team> team)
       : CheckedSolver(solver),
-        ordering_(ordering == OrderingKind::automatic && solver == SolverKind::tacho
-                      ? resolved(solver, ordering)
-                      : ordering),
-        is_mixed_(precision == Precision::mixed),
+        ordering_(options.ordering == OrderingKind::automatic && solver == SolverKind::tacho
+                      ? resolved(solver, options.ordering)
+                      : options.ordering),
+        is_mixed_(options.precision == Precision::mixed),
         team_(std::move(team)),
-        factor_(cholesky_factor(solver, precision)) {}
+        factor_(std::move(factor)) {}
   ~Amesos2Solver() override {
     const Turn turn(trilinos_mutex);
     amesos2_ = {};
@@ -277,10 +265,9 @@ class Amesos2Solver final : public CheckedSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_amesos2_solver(SolverKind solver, OrderingKind ordering,
-                                                  Precision precision,
+std::unique_ptr<LinearSolver> make_amesos2_solver(const Options& options, std::shared_ptr<CholeskyFactor> factor,
                                                   std::shared_ptr<Team> team) {
-  return std::make_unique<Amesos2Solver>(solver, ordering, precision, std::move(team));
+  return std::make_unique<Amesos2Solver>(resolved(options.solver), options, std::move(factor), std::move(team));
 }
 
 }  // namespace pfv

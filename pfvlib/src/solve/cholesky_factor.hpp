@@ -29,9 +29,4 @@ class CholeskyFactor {
   virtual bool bears_other_threads() const = 0;
 };
 
-std::shared_ptr<CholeskyFactor> make_supernodal_cholesky(Precision precision);
-std::shared_ptr<CholeskyFactor> make_cholmod_cholesky();
-/// Kokkos must run as long as the factor lives.
-std::shared_ptr<CholeskyFactor> make_tacho_cholesky();
-
 }  // namespace pfv
