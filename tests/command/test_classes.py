@@ -62,7 +62,7 @@ def members(body):
             continue
         text = re.sub(r"^(class|struct|union)\b[^{]*\{\}", "type", text)
         text = re.sub(r"\{\}", "", re.sub(r"= ?[^,(]*(\([^()]*\))?[^,]*", "", text))
-        if "(" in text or "operator" in text:
+        if "(" in text or re.search(r"\boperator\b", text):
             functions += 1
         elif text != "type":
             names += [re.search(r"(\w+)(\[[^]]*\])*$", one.strip())[1] for one in text.split(",")]

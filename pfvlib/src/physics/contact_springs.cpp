@@ -27,7 +27,7 @@ Eigen::Matrix3d spring_along(const Eigen::Vector3d& normal, const ContactStiffne
 }
 
 /// From one place to the nearest image of another.
-Eigen::Vector3d nearest(Eigen::Vector3d way, const Container& box) {
+Eigen::Vector3d nearest_image(Eigen::Vector3d way, const Container& box) {
   for (int axis = 0; axis < 3; ++axis)
     if (box.periodic[axis]) {
       const double length = box.upper[axis] - box.lower[axis];
@@ -75,7 +75,7 @@ ContactSprings::ContactSprings(const Packing& packing, const Container& box, Con
     throw InputError("contacts across the sides of a tilted cell are not looked for: leave the contact stiffness away");
   const auto count = static_cast<int>(packing.size());
   const auto touch = [&](int a, int b) {
-    const Eigen::Vector3d way = nearest(packing.positions.col(b) - packing.positions.col(a), box);
+    const Eigen::Vector3d way = nearest_image(packing.positions.col(b) - packing.positions.col(a), box);
     const double distance = way.norm();
     if (distance > 0.0 && distance < packing.radii[a] + packing.radii[b])
       springs_.push_back({std::min(a, b), std::max(a, b), spring_along(way / distance, stiffness)});
