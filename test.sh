@@ -49,6 +49,8 @@ if [ "${1:-}" = long ]; then
   "$root/run.sh" wave_dense SHAKE=0.5 RATE=100 AMPLITUDE=600
   "$root/run.sh" wave_loose SHAKE=0.5 RATE=100 AMPLITUDE=600
   PFV_COMMAND=$root/build/bin/pfv /usr/bin/python3 "$root/tests/python/pip_install.py"
+  /usr/bin/python3 "$root/tests/hosts/test_hosts.py" -v
+  PFV_COMMAND=$root/build/bin/pfv PYTHONPATH=$root/build/python /usr/bin/python3 "$root/tests/python/test_notebooks.py" --nbclient
   "$root/doc/accuracy.py"
   "$root/doc/error_vs_time.py" solvers thresholds coupling coupling_5000 sizes models scaling
   "$root/tests/bench/table.py"
