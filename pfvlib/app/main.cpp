@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_command.hpp"
 #include "convert_command.hpp"
+#include "launch.hpp"
 #include "pfv/error.hpp"
 #include "pfv/version.hpp"
 #include "selftest_command.hpp"
@@ -83,6 +84,19 @@ struct Commands {
   }
 };
 
+/// One rank talks for all.
+void solve_on_ranks(pfv::app::SolveArguments arguments) {
+  const std::shared_ptr<const pfv::Ranks> ranks = pfv::app::launched_ranks();
+  if (std::vector<std::string>& solver = arguments.settings["solver"]; ranks && solver.empty()) solver = {"amg"};
+  pfv::app::SolveRequest request;
+  const auto read = [&] { request = pfv::app::request_of(arguments); };
+  if (ranks) ranks->together(read);
+  else read();
+  std::ostream silent(nullptr);
+  const bool speaks = pfv::app::speaks(ranks.get());
+  solve(request, ranks, speaks ? std::cout : silent, speaks ? std::cerr : silent);
+}
+
 /// Of the command that was parsed.
 int carry_out(const Commands& commands) {
   using namespace pfv::app;
@@ -96,7 +110,7 @@ int carry_out(const Commands& commands) {
   else if (commands.settings->parsed())
     commands.of_fix ? write_fix_syntax(std::cout) : write_settings(std::cout);
   else
-    solve(request_of(commands.solve_arguments), std::cout, std::cerr);
+    solve_on_ranks(commands.solve_arguments);
   return succeeded;
 }
 
@@ -117,16 +131,29 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
+namespace {
+
+/// What all ranks know is said once; where one has failed alone, it ends the others.
+int complain_on_ranks(int status, const std::string& message) {
+  const std::shared_ptr<const pfv::Ranks> ranks = pfv::app::launched_ranks();
+  const bool alone = ranks && !ranks->failed_together();
+  if (alone || pfv::app::speaks(ranks.get())) complain(status, message);
+  pfv::app::end_others(ranks.get(), status);
+  return status;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   try {
     const int status = run(argc, argv);
     if (!std::cout.flush()) return complain(failed, "cannot write to standard output");
     return status;
   } catch (const pfv::InputError& error) {
-    return complain(bad_input, error.what());
+    return complain_on_ranks(bad_input, error.what());
   } catch (const std::bad_alloc&) {
-    return complain(failed, "not enough memory: use fewer spheres or another machine");
+    return complain_on_ranks(failed, "not enough memory: use fewer spheres or another machine");
   } catch (const std::exception& error) {
-    return complain(failed, error.what());
+    return complain_on_ranks(failed, error.what());
   }
 }

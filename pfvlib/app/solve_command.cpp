@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve_command.hpp"
 
+#include "launch.hpp"
 #include "network/grains.hpp"
 #include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
@@ -35,9 +36,36 @@ StepTimes repeat_steps(FlowModel& flow, const Packing& packing, const SolveReque
   return {median(cpu), median(wall)};
 }
 
+/// What is said about a packing, on all ranks.
+struct Facts {
+  bool at_rest = false;
+  double fastest = 0.0;        ///< m/s
+  double mean_diameter = 0.0;  ///< m
+  std::vector<std::int64_t> hidden;  ///< ids
+
+  Facts(const SolveRequest& request, const FlowModel& flow, const Packing& packing, const Ranks* ranks) {
+    double sums[3] = {packing.radii.sum(), static_cast<double>(packing.size()), 0.0};
+    double largest[2] = {pfv::at_rest(packing, request.container) ? 0.0 : 1.0,
+                         packing.velocities.cols() > 0 ? packing.velocities.colwise().norm().maxCoeff() : 0.0};
+    Ranks::Bytes ids;
+    for (const int column : flow.hidden()) append(ids, packing.ids.data() + column, 1);
+    std::vector<Ranks::Bytes> all{ids};
+    if (ranks) {
+      ranks->add(sums, 2);
+      ranks->take_largest(largest, 2);
+      all = ranks->gather(ids);
+    }
+    for (const Ranks::Bytes& part : all)
+      for (const std::int64_t id : values_in<std::int64_t>(part)) hidden.push_back(id);
+    at_rest = largest[0] == 0.0;
+    fastest = largest[1];
+    mean_diameter = sums[1] > 0.0 ? 2.0 * sums[0] / sums[1] : 0.0;
+  }
+};
+
 /// Nothing drives the flow and nothing fixes the level of the pressure.
-bool is_unloaded(const SolveRequest& request, const Packing& packing) {
-  if (request.settings.fluid.bulk_modulus || !at_rest(packing, request.container) ||
+bool is_unloaded(const SolveRequest& request, const Facts& facts) {
+  if (request.settings.fluid.bulk_modulus || !facts.at_rest ||
       !request.container.pressure_gradient.isZero(0.0))
     return false;
   const auto idle = [](const Boundary& boundary) {
@@ -51,41 +79,39 @@ bool is_unloaded(const SolveRequest& request, const Packing& packing) {
                      [&](const Region& region) { return idle(region.boundary); });
 }
 
-void warn_of_hidden(const FlowModel& flow, const Packing& packing, std::ostream& warnings) {
+void warn_of_hidden(const Facts& facts, std::ostream& warnings) {
   constexpr std::size_t shown = 5;
-  const std::vector<int> hidden = flow.hidden();
+  const std::vector<std::int64_t>& hidden = facts.hidden;
   if (hidden.empty()) return;
   warnings << "pfv: warning: " << hidden.size()
            << " hidden spheres lie inside bigger ones and touch no pore, ids";
-  for (std::size_t k = 0; k < std::min(shown, hidden.size()); ++k)
-    warnings << ' ' << packing.ids[hidden[k]];
+  for (std::size_t k = 0; k < std::min(shown, hidden.size()); ++k) warnings << ' ' << hidden[k];
   warnings << (hidden.size() > shown ? " ...\n" : "\n");
 }
 
 /// A flow between pressures through grains that are not quite at rest.
-void warn_of_motion(const SolveRequest& request, const Packing& packing, const Report& report, std::ostream& warnings) {
-  if (report.permeability || packing.velocities.cols() == 0 || packing.velocities.isZero(0.0)) return;
+void warn_of_motion(const SolveRequest& request, const Facts& facts, const Report& report, std::ostream& warnings) {
+  if (report.permeability || facts.fastest == 0.0) return;
   const auto& faces = request.container.faces;
   const auto pressures = std::count_if(faces.begin(), faces.end(), [](const ContainerFace& face) {
     return face.boundary.imposes_pressure();
   });
-  if (pressures != 2 || at_rest(packing, request.container)) return;
-  warnings << "pfv: warning: the grains move, up to " << packing.velocities.colwise().norm().maxCoeff()
+  if (pressures != 2 || facts.at_rest) return;
+  warnings << "pfv: warning: the grains move, up to " << facts.fastest
            << " m/s: no permeability is given; --at-rest leaves their velocities out\n";
 }
 
-void warn_of_size(const Packing& packing, std::ostream& warnings) {
-  const double diameter = 2.0 * packing.radii.mean();
-  if (diameter > largest_usual_diameter)
-    warnings << "pfv: warning: the mean diameter is " << diameter
+void warn_of_size(const Facts& facts, std::ostream& warnings) {
+  if (facts.mean_diameter > largest_usual_diameter)
+    warnings << "pfv: warning: the mean diameter is " << facts.mean_diameter
              << " m; lengths are in m: is --length-unit mm missing?\n";
 }
 
-void warn_of_pinned(const SolveRequest& request, const Packing& packing, const Report& report, std::ostream& warnings) {
+void warn_of_pinned(const SolveRequest& request, const Facts& facts, const Report& report, std::ostream& warnings) {
   const Counts& counts = report.counts;
   // in a cell that is periodic all around no pressure has a level
   if (report.permeability_tensor && counts.pinned_pores == report.pores) return;
-  if (is_unloaded(request, packing))
+  if (is_unloaded(request, facts))
     warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
   else if (counts.pinned_pores > 0)
     warnings << "pfv: warning: " << counts.pinned_pores
@@ -98,14 +124,14 @@ void warn_of_empty_space(const FlowModel& flow, std::ostream& warnings) {
   if (warning) warnings << "pfv: warning: " << *warning << '\n';
 }
 
-void warn(const SolveRequest& request, const FlowModel& flow, const Packing& packing,
-          const Report& report, std::ostream& warnings) {
+void warn(const SolveRequest& request, const FlowModel& flow, const Facts& facts, const Report& report,
+          std::ostream& warnings) {
   const Counts& counts = report.counts;
-  warn_of_hidden(flow, packing, warnings);
-  warn_of_motion(request, packing, report, warnings);
-  warn_of_size(packing, warnings);
+  warn_of_hidden(facts, warnings);
+  warn_of_motion(request, facts, report, warnings);
+  warn_of_size(facts, warnings);
   warn_of_empty_space(flow, warnings);
-  warn_of_pinned(request, packing, report, warnings);
+  warn_of_pinned(request, facts, report, warnings);
   if (counts.degenerate_throats > 0)
     warnings << "pfv: warning: " << counts.degenerate_throats
              << " throats without positive volume, surface or area: a rule sets their"
@@ -114,11 +140,16 @@ void warn(const SolveRequest& request, const FlowModel& flow, const Packing& pac
     warnings << "pfv: warning: the permeability's estimated error may not hold: " << reason << '\n';
 }
 
-void write_outputs(const SolveRequest& request, const FlowModel& flow, const Packing& packing,
-                   const Report& report) {
-  if (request.forces) write_forces(*request.forces, packing, flow.forces());
-  if (request.report) write_report(*request.report, report);
-  if (request.vtk) write_fields(*request.vtk, flow.fields());
+void write_outputs(const SolveRequest& request, const FlowModel& flow, const DealtPacking& packing,
+                   const Report& report, const Ranks* ranks) {
+  if (request.forces) write_forces(*request.forces, packing.rows(), packing.forces_of_rows(flow.forces()), ranks);
+  const auto write = [&] {
+    if (!speaks(ranks)) return;
+    if (request.report) write_report(*request.report, report);
+    if (request.vtk) write_fields(*request.vtk, flow.fields());
+  };
+  if (ranks) ranks->together(write);
+  else write();
 }
 
 /// The tensor stands in the report; without a gradient its error is worth a line all the same.
@@ -147,14 +178,33 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
 
 }  // namespace
 
-void solve(const SolveRequest& request, std::ostream& out, std::ostream& warnings) {
+namespace {
+
+void refuse_on_ranks(const SolveRequest& request) {
+  if (request.settings.grid()) throw InputError("the model darcy_grid runs on one rank");
+  if (request.vtk || request.culprits)
+    throw InputError("--vtk and --culprits are written by one rank; run without mpirun for them");
+}
+
+}  // namespace
+
+void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& ranks, std::ostream& out,
+           std::ostream& warnings) {
   const double start = cpu_seconds();
-  const PackingArrays arrays = packing_of(request, warnings);
+  PackingArrays read;
+  const auto read_rows = [&] { read = own_rows(packing_of(request, warnings), ranks.get()); };
+  if (ranks) {
+    ranks->together([&] { refuse_on_ranks(request); });
+    ranks->together(read_rows);
+  } else {
+    read_rows();
+  }
+  const DealtPacking dealt(std::move(read), ranks.get());
+  const Packing packing = dealt.own();
   const double read_seconds = cpu_seconds() - start;
 
-  const Packing packing = arrays.view();
   const std::unique_ptr<FlowModel> model =
-      make_flow(request.container, request.settings.fluid, request.settings.options, request.settings.grid());
+      make_flow(request.container, request.settings.fluid, request.settings.options, request.settings.grid(), ranks);
   FlowModel& flow = *model;
   try {
     flow.evaluate(packing, request.time_step);
@@ -168,8 +218,8 @@ void solve(const SolveRequest& request, std::ostream& out, std::ostream& warning
   report.seconds.read = read_seconds;
   report.seconds.step = step.cpu;
   report.wall_seconds.step = step.wall;
-  write_outputs(request, flow, packing, report);
-  warn(request, flow, packing, report, warnings);
+  write_outputs(request, flow, dealt, report, ranks.get());
+  warn(request, flow, Facts(request, flow, packing, ranks.get()), report, warnings);
   write_summary(request, report, out);
 }
 

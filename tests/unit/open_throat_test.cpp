@@ -176,7 +176,7 @@ TEST(OpenThroat, ScalesWithViscosityAndSize) {
       pfv::conductances(ConductanceLaw::open_throat, 7.0, s.network, s.throats, s.spheres);
   for (int t = 0; t < s.network.throats(); ++t)
     EXPECT_NEAR(thick.value[t] * 7.0, one.value[t], 1e-14 * one.value[t]);
-  EXPECT_EQ(one.degenerate, 0);
+  EXPECT_EQ(std::count(one.by_rule.begin(), one.by_rule.end(), 1), 0);
 }
 
 }  // namespace

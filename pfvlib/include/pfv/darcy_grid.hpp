@@ -80,8 +80,9 @@ class DarcyGrid final : public FlowModel {
   std::unique_ptr<DarcyData> data_;
 };
 
-/// A `DarcyGrid` where there is a grid, else a `Flow`.
+/// A `DarcyGrid` where there is a grid, else a `Flow`, which several ranks may share.
 std::unique_ptr<FlowModel> make_flow(const Container& box, const Fluid& fluid, const Options& options,
-                                     const std::optional<DarcyOptions>& grid);
+                                     const std::optional<DarcyOptions>& grid,
+                                     std::shared_ptr<const Ranks> ranks = nullptr);
 
 }  // namespace pfv

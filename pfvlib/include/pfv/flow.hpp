@@ -46,7 +46,11 @@ std::optional<std::string> warning_of(const EmptySpace& empty);
 /// displaced by more than its radius, or until `rebuild` asks for it.
 class Flow final : public FlowModel {
  public:
-  Flow(Container container, Fluid fluid, Options options = {});
+  /// `ranks` (pfv/mpi.hpp): those that share the packing, null for one that has it. Then each rank calls every method,
+  /// in the same order, with its own part of the packing, and gets the forces on it; balances, faces and means are
+  /// those of all, pore arrays this rank's. The solver is amg, steps are explicit. Bytes are the same on the same
+  /// number of ranks with the same parts.
+  Flow(Container container, Fluid fluid, Options options = {}, std::shared_ptr<const Ranks> ranks = nullptr);
   ~Flow() override;
   Flow(Flow&&) noexcept;
   Flow& operator=(Flow&&) noexcept;

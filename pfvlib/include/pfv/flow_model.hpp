@@ -15,6 +15,8 @@
 
 namespace pfv {
 
+class Ranks;
+
 /// Forces of the fluid on the grains, one column a sphere of the packing, in its order, N.
 /// Hidden and left-out spheres get buoyancy (hidden ones) or nothing (left-out ones).
 struct Forces {

@@ -28,8 +28,9 @@ Container read_container(const std::string& path);
 /// Text of a caller's own. A stream (a device, a pipe, /dev/stdout) is appended to.
 void write_text(const std::string& path, const std::string& text);
 
-/// `id,fx,fy,fz,fpx,fpy,fpz,fvx,fvy,fvz`, N; needs split forces.
-void write_forces(const std::string& path, const Packing& packing, const Forces& forces);
+/// `id,fx,fy,fz,fpx,fpy,fpz,fvx,fvy,fvz`, N; needs split forces. On several ranks each has some of the rows, those of
+/// rank 0 first; that one writes them, rank by rank. Collective then.
+void write_forces(const std::string& path, const Packing& packing, const Forces& forces, const Ranks* ranks = nullptr);
 
 /// The report as JSON, keys as in `Report`; absent values are null.
 std::string json_of(const Report& report);

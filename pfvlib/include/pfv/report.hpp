@@ -85,6 +85,7 @@ struct Report {
   Seconds seconds;
   WallSeconds wall_seconds;
   int threads = 1;
+  int ranks = 1;  ///< that shared the packing: seconds are the sum of theirs, wall time and memory those of the largest
   std::int64_t peak_memory_bytes = 0;
 };
 
@@ -165,6 +166,7 @@ void for_each_entry(const Report& report, const See& see) {
   see("seconds", report.seconds);
   see("wall_seconds", report.wall_seconds);
   see("threads", report.threads);
+  see("ranks", report.ranks);
   see("peak_memory_bytes", report.peak_memory_bytes);
 }
 

@@ -29,9 +29,10 @@ void refuse_what_has_no_cells(const Container& box) {
 }  // namespace
 
 std::unique_ptr<FlowModel> make_flow(const Container& box, const Fluid& fluid, const Options& options,
-                                     const std::optional<DarcyOptions>& grid) {
-  if (grid) return std::make_unique<DarcyGrid>(box, fluid, *grid, options);
-  return std::make_unique<Flow>(box, fluid, options);
+                                     const std::optional<DarcyOptions>& grid, std::shared_ptr<const Ranks> ranks) {
+  if (!grid) return std::make_unique<Flow>(box, fluid, options, std::move(ranks));
+  if (ranks) throw InputError("the model darcy_grid runs on one rank");
+  return std::make_unique<DarcyGrid>(box, fluid, *grid, options);
 }
 
 DarcyGrid::DarcyGrid(Container box, Fluid fluid, DarcyOptions grid, Options options)

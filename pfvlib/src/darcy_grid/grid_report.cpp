@@ -48,8 +48,8 @@ Report make_report(const DarcyData& flow) {
   report.porosity = built.porosity.mean();
   report.pore_volume = report.porosity * built.grid.volume() * built.grid.size();
   report.solid_area = built.overlaps.surface;
-  const std::vector<BoundaryPart> parts = boundary_parts(flow);
-  const Totals totals = totals_of(flow.last.box, parts);
+  const BoundarySums sums = sums_of(flow.last.box, boundary_parts(flow));
+  const Totals totals = totals_of(sums);
   report.inflow = totals.inflow;
   report.outflow = totals.outflow;
   report.volume_rate_sum = flow.last.rates.sum();
@@ -70,7 +70,7 @@ Report make_report(const DarcyData& flow) {
   report.conductance = "kozeny_carman";
   report.threads = flow.options.threads;
   report.faces = flow.last.faces;
-  report.openings = openings_of(flow.last.box, parts);
+  report.openings = openings_of(flow.last.box, sums);
   report.counts = flow.work.counts;
   report.seconds = flow.work.seconds;
   report.wall_seconds = flow.work.wall_seconds;

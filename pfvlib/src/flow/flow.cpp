@@ -4,9 +4,11 @@
 
 #include "pfv/error.hpp"
 #include "problem/box_changes.hpp"
+#include "problem/solver_abilities.hpp"
 #include "flow/flow_parts.hpp"
 #include "step/forces.hpp"
 #include "step/network_builder.hpp"
+#include "step/operators.hpp"
 #include "work/phase_clock.hpp"
 
 namespace pfv {
@@ -31,8 +33,8 @@ void Schemes::forget_factor() {
   implicit_.forget_factor();
 }
 
-Flow::Parts::Parts(Container in, Fluid of, const Options& by)
-    : container(std::move(in)), fluid(of), options(by), team(std::make_shared<Team>(by.threads)) {}
+Flow::Parts::Parts(Container in, Fluid of, const Options& by, std::shared_ptr<const Ranks> all)
+    : container(std::move(in)), fluid(of), options(by), team(std::make_shared<Team>(by.threads)), ranks(std::move(all)) {}
 
 BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, bool commit) {
   // explicit steps have ended when they are booked, so that the faces have swept already
@@ -46,12 +48,12 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
   };
   BuiltNetwork& built =
       keeper.update(packing, problem(),
-                    {dt, commit, memory.pressures.size() > 0, solution}, work, taken_up);
+                    {dt, commit, fluid.bulk_modulus.has_value(), solution}, work, taken_up);
   if (factor_pressures(built, problem(), dt, work)) schemes.forget_factor();
-  work.counts.pinned_pores = 0;
-  work.counts.open_water = built.operators.open_water ? static_cast<std::int64_t>(built.operators.open_water->size()) : 0;
-  for (const Isolated& isolated : built.kept.system.isolated)
-    work.counts.pinned_pores += static_cast<std::int64_t>(isolated.pores.size());
+  work.counts.open_water = built.operators.open_water ? open_water_count(built) : 0;
+  double pinned = 0.0;
+  for (const Isolated& isolated : built.kept.system.isolated) pinned += static_cast<double>(isolated.pores.size());
+  work.counts.pinned_pores = static_cast<std::int64_t>(built.share.sum(pinned));
   return built;
 }
 
@@ -70,6 +72,16 @@ void Flow::Parts::begin_solution(const BuiltNetwork& built, double dt, bool comm
                               0.5 * schemes.of(coupling).direction() * dt);
 }
 
+namespace {
+
+void forget_ghosts(Forces& forces, Eigen::Index own) {
+  for (Eigen::Matrix3Xd* columns : {&forces.total, &forces.pressure, &forces.viscous, &forces.torque})
+    if (columns->cols() > own) columns->conservativeResize(3, own);
+  if (forces.sphere_pressure.size() > own) forces.sphere_pressure.conservativeResize(own);
+}
+
+}  // namespace
+
 const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
                                  const GrainDynamics* dynamics, bool commit) {
   const double wall_start = wall_seconds();
@@ -82,8 +94,10 @@ const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
     schemes.of(by).check(problem());
     BuiltNetwork& built = update_network(packing, dt, commit);
     begin_solution(built, dt, commit);
-    schemes.of(by).find({built, problem(), packing, dynamics, work}, solution);
-    if (options.forces) find_forces(built, problem(), packing, work, solution, forces);
+    const Packing seen = built.halo ? built.halo->seen() : packing;
+    schemes.of(by).find({built, problem(), seen, dynamics, work}, solution);
+    if (options.forces) find_forces(built, problem(), seen, work, solution, forces);
+    if (built.halo) forget_ghosts(forces, packing.size());
     solved = true;
     if (commit) {
       remember(memory, built, fluid, solution);
@@ -123,13 +137,29 @@ const Forces& Flow::Parts::solve_by_choice(const Packing& packing, double dt, co
   return forces;
 }
 
-Flow::Flow(Container container, Fluid fluid, Options options) {
+namespace {
+
+/// What several ranks can do together.
+void check_shared(const Options& options) {
+  if (resolved(options.solver) != SolverKind::amg)
+    throw InputError(std::string("the solver ") + name_of(options.solver) + " runs on one rank; on several give amg");
+  if (options.rebuild_lag > 0) throw InputError("rebuild_lag works on one rank; on several leave it at 0");
+  if (options.shear_viscous) throw InputError("shear viscous forces work on one rank; on several leave them out");
+  if (options.volume_rates == VolumeRates::geometric || options.partition == Partition::yade)
+    throw InputError("the papers' volume rates and YADE's partition work on one rank; on several leave them out");
+}
+
+}  // namespace
+
+Flow::Flow(Container container, Fluid fluid, Options options, std::shared_ptr<const Ranks> ranks) {
   check(container);
   find_bounds(container);
   check(fluid);
+  if (ranks && options.solver == SolverKind::automatic) options.solver = SolverKind::amg;
   check(options);
   check(container, options);
-  parts_ = std::make_unique<Parts>(std::move(container), fluid, options);
+  if (ranks) check_shared(options);
+  parts_ = std::make_unique<Parts>(std::move(container), fluid, options, std::move(ranks));
 }
 
 Flow::~Flow() = default;
@@ -144,6 +174,8 @@ const Forces& Flow::advance(const Packing& packing, double dt, const Step& step)
   if (step.coupling != Coupling::explicit_step && !step.dynamics)
     throw InputError(std::string(name_of(step.coupling)) +
                      " coupling needs the masses and other forces of the grains: give Step::dynamics");
+  if (parts_->ranks && step.coupling != Coupling::explicit_step)
+    throw InputError(std::string(name_of(step.coupling)) + " coupling works on one rank; on several take explicit steps");
   if (step.coupling == Coupling::automatic) return parts_->solve_by_choice(packing, dt, step);
   return parts_->solve(packing, dt, step.coupling, step.dynamics, step.commit);
 }

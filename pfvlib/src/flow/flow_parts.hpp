@@ -35,12 +35,13 @@ class Schemes {
 
 /// Who owns what behind Flow.
 struct Flow::Parts {
-  Parts(Container container, Fluid fluid, const Options& options);
+  Parts(Container container, Fluid fluid, const Options& options, std::shared_ptr<const Ranks> ranks);
 
   Container container;
   Fluid fluid;
   Options options;
   std::shared_ptr<Team> team;  ///< of options.threads
+  std::shared_ptr<const Ranks> ranks;  ///< null: one has the packing
   NetworkKeeper keeper;
   FluidMemory memory;
   Schemes schemes;
@@ -53,7 +54,7 @@ struct Flow::Parts {
   Forces forces;
   std::optional<Balance> kept_balance;
 
-  Problem problem() const { return {container, fluid, options, team}; }
+  Problem problem() const { return {container, fluid, options, team, ranks}; }
   /// Solves, and books the step where it is committed.
   const Forces& solve(const Packing& packing, double dt, Coupling by,
                       const GrainDynamics* dynamics, bool commit);
@@ -65,6 +66,8 @@ struct Flow::Parts {
   /// Throws InputError without a result.
   BuiltNetwork& network() const;
   const Balance& balance();
+  /// Grains that are left out because they are outside, on all ranks.
+  std::int64_t outside() const;
 
  private:
   BuiltNetwork& update_network(const Packing& packing, double dt, bool commit);

@@ -24,6 +24,13 @@ const Balance& Flow::Parts::balance() {
   return *kept_balance;
 }
 
+std::int64_t Flow::Parts::outside() const {
+  const BuiltNetwork& built = network();
+  std::int64_t left_out = keeper.packed();
+  for (int k = 0; k < built.grains.spheres.size(); ++k) left_out -= built.share.owns_sphere(k);
+  return static_cast<std::int64_t>(built.share.sum(static_cast<double>(left_out)));
+}
+
 const Container& Flow::container() const { return parts_->container; }
 const Fluid& Flow::fluid() const { return parts_->fluid; }
 const Options& Flow::options() const { return parts_->options; }
@@ -76,14 +83,14 @@ std::vector<Eigen::Matrix3d> Flow::viscosity_matrices(const std::vector<int>& co
 std::vector<int> Flow::hidden() const {
   const BuiltNetwork& built = parts_->network();
   std::vector<int> columns;
-  for (const int sphere : built.network.hidden) columns.push_back(built.grains.columns[sphere]);
+  for (const int sphere : built.network.hidden)
+    if (built.share.owns_sphere(sphere)) columns.push_back(built.grains.columns[sphere]);
   return columns;
 }
 
 std::int64_t Flow::hidden_or_outside() const {
   const BuiltNetwork& built = parts_->network();
-  return static_cast<std::int64_t>(built.network.hidden.size()) + parts_->keeper.packed() -
-         built.grains.spheres.size();
+  return hidden_spheres(built) + parts_->outside();
 }
 
 Eigen::Matrix3Xd Flow::pore_velocities() const {
@@ -125,22 +132,47 @@ Eigen::VectorXd Flow::pore_volumes() const { return pfv::pore_volumes(parts_->ne
 
 EmptySpace Flow::empty_space() const { return pfv::empty_space(parts_->network()); }
 
+namespace {
+
+double residual_of(const BuiltNetwork& built, const Solution& solution) {
+  const SymmetricMatrix& matrix = built.kept.system.matrix;
+  return built.rows ? relative_residual(matrix, solution.unknown_pressures, solution.right_side, *built.rows)
+                    : relative_residual(matrix, solution.unknown_pressures, solution.right_side);
+}
+
+/// CPU seconds of all ranks, wall time of the slowest.
+void add_up_times(Report& report, const Ranks& ranks) {
+  Seconds& seconds = report.seconds;
+  for (double* phase : {&seconds.triangulate, &seconds.throats, &seconds.assemble, &seconds.order, &seconds.factor,
+                        &seconds.solve, &seconds.forces, &seconds.total})
+    *phase = ranks.sum(*phase);
+  report.wall_seconds.total = ranks.largest(report.wall_seconds.total);
+  report.ranks = ranks.count();
+}
+
+}  // namespace
+
 Report Flow::report() const {
   BuiltNetwork& built = parts_->network();
   const Solution& solution = parts_->solution;
   const Balance& balance = parts_->balance();
   Report report = network_report(built, parts_->problem(), solution, balance,
                                  parts_->work.counts.query_solve);
-  report.spheres = parts_->keeper.packed();
-  report.outside = report.spheres - built.grains.spheres.size();
+  report.spheres = static_cast<std::int64_t>(built.share.sum(static_cast<double>(parts_->keeper.packed())));
+  report.outside = parts_->outside();
   add_account(report, parts_->memory, built, parts_->fluid, solution);
-  if (parts_->forces.total.cols() > 0) report.force_sum = parts_->forces.total.rowwise().sum();
+  if (parts_->options.forces) {
+    Eigen::VectorXd sum = parts_->forces.total.rowwise().sum();
+    built.share.add(sum);
+    report.force_sum = sum;
+  }
   report.residual = solution.implicit
                         ? parts_->schemes.implicit().residual()
-                        : relative_residual(built.kept.system.matrix, solution.unknown_pressures, solution.right_side);
+                        : residual_of(built, solution);
   report.counts = parts_->work.counts;
   report.seconds = parts_->work.seconds;
   report.wall_seconds = parts_->work.wall_seconds;
+  if (parts_->ranks) add_up_times(report, *parts_->ranks);
   return report;
 }
 

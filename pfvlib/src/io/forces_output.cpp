@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/atomic_file.hpp"
+#include "parallel/ranks.hpp"
 #include "text/number_text.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
@@ -26,12 +27,10 @@ void require_complete(const Packing& packing, const Forces& forces) {
                         " is not finite: check its radius and its neighbours");
 }
 
-}  // namespace
-
-void write_forces(const std::string& path, const Packing& packing, const Forces& forces) {
+std::string rows_of(const Packing& packing, const Forces& forces) {
   require_complete(packing, forces);
-  std::string text = "id,fx,fy,fz,fpx,fpy,fpz,fvx,fvy,fvz\n";
-  text.reserve(text.size() + static_cast<std::size_t>(packing.size()) * 200);
+  std::string text;
+  text.reserve(static_cast<std::size_t>(packing.size()) * 200);
   for (Eigen::Index k = 0; k < packing.size(); ++k) {
     text += std::to_string(packing.ids[k]);
     append_vector(text, forces.total.col(k));
@@ -39,7 +38,35 @@ void write_forces(const std::string& path, const Packing& packing, const Forces&
     append_vector(text, forces.viscous.col(k));
     text += '\n';
   }
-  detail::write_file(path, text);
+  return text;
+}
+
+/// The texts of all ranks in their order, on rank 0.
+std::string joined(const std::string& own, const Ranks& ranks) {
+  std::string all;
+  for (int r = 0; r < ranks.count(); ++r) {  // one at a time: no two of them are on their way together
+    std::vector<Ranks::Bytes> to(ranks.count());
+    if (ranks.own() == r) to[0].assign(own.begin(), own.end());
+    const Ranks::Bytes part = ranks.hand_over(to)[r];
+    all.append(part.begin(), part.end());
+  }
+  return all;
+}
+
+}  // namespace
+
+void write_forces(const std::string& path, const Packing& packing, const Forces& forces, const Ranks* ranks) {
+  const std::string header = "id,fx,fy,fz,fpx,fpy,fpz,fvx,fvy,fvz\n";
+  if (!ranks) {
+    detail::write_file(path, header + rows_of(packing, forces));
+    return;
+  }
+  std::string text;
+  ranks->together([&] { text = rows_of(packing, forces); });
+  text = joined(text, *ranks);
+  ranks->together([&] {
+    if (ranks->own() == 0) detail::write_file(path, header + text);
+  });
 }
 
 }  // namespace pfv

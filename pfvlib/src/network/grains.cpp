@@ -189,6 +189,7 @@ ActiveGrains select_grains(const Packing& packing, const Container& container, O
   spheres.periodic = container.periodic;
   spheres.tilt = container.tilt;
   gather_spheres(packing, container.lower, grains.columns, spheres);
+  if (spheres.size() > 0) spheres.mean_radius = spheres.radii.mean();
   if (packing.displaced_volumes.size() > 0) spheres.displaced = packing.displaced_volumes(grains.columns);
   if (has_bodies(packing)) {
     grains.held = packing.bodies;

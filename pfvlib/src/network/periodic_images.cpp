@@ -244,6 +244,7 @@ Images replicate(const Spheres& spheres, double margin) {
   images.spheres.edges = spheres.edges;
   images.spheres.walls = spheres.walls;
   images.spheres.volume = spheres.volume;
+  images.spheres.mean_radius = spheres.mean_radius;
   images.spheres.periodic = spheres.periodic;
   images.spheres.tilt = spheres.tilt;
   images.spheres.ids.resize(n);

@@ -2,6 +2,7 @@
 #include "network/pore_boundaries.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace pfv {
@@ -28,8 +29,14 @@ bool within(const InFace& p) {
          (p.place.array() <= p.upper.array() + slack).all();
 }
 
+/// Whether the nearest of all ranks is here, and none of any is inside.
+bool takes_nearest(const Share& share, bool any_inside, double nearest_distance) {
+  return !share.any(any_inside) && share.largest(-nearest_distance) == -nearest_distance &&
+         std::isfinite(nearest_distance);
+}
+
 void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
-                   const Container& container, int number) {
+                   const Container& container, int number, const Share& share) {
   const ContainerPatch& patch = container.patches[number];
   int axis = 0;
   container.faces[patch.face].surface.normal.cwiseAbs().maxCoeff(&axis);
@@ -37,7 +44,7 @@ void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNet
   double nearest_distance = std::numeric_limits<double>::infinity();
   bool any = false;
   for (PoreBoundaries::Contact& contact : contacts) {
-    if (contact.face != patch.face) continue;
+    if (contact.face != patch.face || !share.has_whole(contact.pore)) continue;
     const InFace place = in_face(patch, axis, network, contact.pore);
     if (within(place)) {
       contact.boundary = patch_number(container, number);
@@ -49,11 +56,11 @@ void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNet
       nearest = &contact;
     }
   }
-  if (!any && nearest) nearest->boundary = patch_number(container, number);
+  if (takes_nearest(share, any, nearest_distance)) nearest->boundary = patch_number(container, number);
 }
 
 /// The region of each pore, or -1.
-std::vector<int> regions_of_pores(const PoreNetwork& network, const Container& container) {
+std::vector<int> regions_of_pores(const PoreNetwork& network, const Container& container, const Share& share) {
   std::vector<int> region_of(network.pores(), -1);
   for (std::size_t number = 0; number < container.regions.size(); ++number) {
     const Region& region = container.regions[number];
@@ -63,6 +70,7 @@ std::vector<int> regions_of_pores(const PoreNetwork& network, const Container& c
     double nearest_distance = std::numeric_limits<double>::infinity();
     bool any = false;
     for (int pore = 0; pore < network.pores(); ++pore) {
+      if (!share.has_whole(pore)) continue;
       const Eigen::Vector3d place = network.origin + network.pore_centres.col(pore);
       if ((place.array() >= region.lower.array() - slack).all() &&
           (place.array() <= region.upper.array() + slack).all()) {
@@ -75,15 +83,15 @@ std::vector<int> regions_of_pores(const PoreNetwork& network, const Container& c
         nearest = pore;
       }
     }
-    if (!any && nearest >= 0) region_of[nearest] = static_cast<int>(number);
+    if (takes_nearest(share, any, nearest_distance)) region_of[nearest] = static_cast<int>(number);
   }
   return region_of;
 }
 
 void give_to_regions(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
-                     const Container& container) {
+                     const Container& container, const Share& share) {
   if (container.regions.empty()) return;
-  const std::vector<int> region_of = regions_of_pores(network, container);
+  const std::vector<int> region_of = regions_of_pores(network, container, share);
   for (PoreBoundaries::Contact& contact : contacts)
     if (region_of[contact.pore] >= 0)
       contact.boundary = first_region(container) + region_of[contact.pore];
@@ -114,20 +122,20 @@ int PoreBoundaries::contact_of(int pore, int face) const {
   return static_cast<int>(found - contacts.begin());
 }
 
-PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Container& container) {
+PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Container& container, const Share& share) {
   PoreBoundaries result;
   for (int pore = 0; pore < network.pores(); ++pore)
     for (int face = 0; face < container.face_count(); ++face)
       if (network.pore_faces[pore] & face_bit(face)) result.contacts.push_back({pore, face, face});
   for (std::size_t i = 0; i < container.patches.size(); ++i)
-    give_to_patch(result.contacts, network, container, static_cast<int>(i));
+    give_to_patch(result.contacts, network, container, static_cast<int>(i), share);
 
   result.no_slip_faces.assign(network.pores(), 0);
   for (const auto& contact : result.contacts)
     if (container.faces[contact.face].wall == Wall::no_slip &&
         !boundary_of(container, contact.boundary).is_open())
       result.no_slip_faces[contact.pore] |= face_bit(contact.face);
-  give_to_regions(result.contacts, network, container);
+  give_to_regions(result.contacts, network, container, share);
   return result;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parallel/share.hpp"
 #include "pfv/container.hpp"
 #include "pfv/network.hpp"
 
@@ -24,7 +25,8 @@ struct PoreBoundaries {
 };
 
 /// Which face or patch each boundary pore belongs to; geometry only, so values may change later.
-PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Container& container);
+/// Collective where several ranks share the network.
+PoreBoundaries find_pore_boundaries(const PoreNetwork& network, const Container& container, const Share& share = {});
 
 inline int patch_number(const Container& container, std::size_t patch) {
   return container.face_count() + static_cast<int>(patch);

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "network/pore_network.hpp"
 
-#include "network/cell_centres.hpp"
 #include "network/disjoint_sets.hpp"
 #include "network/facets.hpp"
 #include "network/periodic_images.hpp"
-#include "network/triangulation.hpp"
 #include "pfv/error.hpp"
 
 #include <algorithm>
@@ -49,24 +47,27 @@ double dual_length(const Facet& facet, const Eigen::Matrix3Xd& centres, const Sp
 
 /// Joins cells whose dual vertices are one, and each flat cell to the neighbour whose dual vertex is
 /// nearest: the polygon that a flat cell splits in two sheets becomes one throat again.
-DisjointSets join_cells(const PoreNetwork& network, const std::vector<Facet>& facets,
-                        const Spheres& spheres, const std::vector<char>& flat, double spacing) {
-  DisjointSets sets(network.cells());
-  std::vector<double> nearest(network.cells(), std::numeric_limits<double>::infinity());
-  std::vector<int> neighbour(network.cells(), -1);
+std::vector<int> join_cells(const CellCentres& centres, const std::vector<Facet>& facets,
+                            const Spheres& spheres, double spacing) {
+  const int cells = static_cast<int>(centres.places.cols());
+  DisjointSets sets(cells);
+  std::vector<double> nearest(cells, std::numeric_limits<double>::infinity());
+  std::vector<int> neighbour(cells, -1);
   for (const Facet& facet : facets) {
-    const double length = dual_length(facet, network.cell_centres, spheres);
+    const double length = dual_length(facet, centres.places, spheres);
     if (length < merge_distance * spacing) sets.join(facet.cells[0], facet.cells[1]);
     for (int side = 0; side < 2; ++side) {
       const int cell = facet.cells[side];
-      if (!flat[cell] || !(length < nearest[cell])) continue;
+      if (!centres.flat[cell] || !(length < nearest[cell])) continue;
       nearest[cell] = length;
       neighbour[cell] = facet.cells[1 - side];
     }
   }
-  for (int c = 0; c < network.cells(); ++c)
+  for (int c = 0; c < cells; ++c)
     if (neighbour[c] >= 0) sets.join(c, neighbour[c]);
-  return sets;
+  std::vector<int> first(cells);
+  for (int c = 0; c < cells; ++c) first[c] = sets.find(c);
+  return first;
 }
 
 /// The centre of a pore is the dual vertex of one of its cells: not a flat one if it has others, and
@@ -86,16 +87,11 @@ void choose_pore_centres(PoreNetwork& network, int pores, const std::vector<char
     network.pore_centres.col(pore) = network.cell_centres.col(chosen[pore]);
 }
 
-void join_cells_into_pores(PoreNetwork& network, const std::vector<Facet>& facets,
-                           const Spheres& spheres, const std::vector<char>& flat,
-                           double spacing) {
-  DisjointSets sets = join_cells(network, facets, spheres, flat, spacing);
+void make_pores_of_cells(PoreNetwork& network, const std::vector<int>& first, const std::vector<char>& flat) {
   network.cell_pore.assign(network.cells(), -1);
   int pores = 0;
-  for (int c = 0; c < network.cells(); ++c) {
-    const int root = sets.find(c);  // the smallest of the set, so it has its pore already
-    network.cell_pore[c] = root == c ? pores++ : network.cell_pore[root];
-  }
+  for (int c = 0; c < network.cells(); ++c)  // the first of a pore has its number already
+    network.cell_pore[c] = first[c] == c ? pores++ : network.cell_pore[first[c]];
   choose_pore_centres(network, pores, flat);
   network.pore_faces.assign(pores, 0);
   for (int c = 0; c < network.cells(); ++c)
@@ -174,23 +170,6 @@ std::pair<double, int> outside_by(const PoreNetwork& network, const Spheres& sph
   return worst;
 }
 
-/// The network of spheres (or of all images) as they stand.
-PoreNetwork network_of(const Spheres& spheres, double spacing) {
-  Triangulation triangulation = triangulate(spheres);
-  std::vector<Facet> facets = list_facets(triangulation);
-  PoreNetwork network;
-  network.vertex_sphere.resize(spheres.size());
-  std::iota(network.vertex_sphere.begin(), network.vertex_sphere.end(), 0);
-  CellCentres centres = cell_centres(triangulation, spheres);
-  network.cell_centres = std::move(centres.places);
-  network.cell_vertices = std::move(triangulation.vertices);
-  network.cell_neighbours = std::move(triangulation.neighbours);
-  network.hidden = std::move(triangulation.hidden);
-  join_cells_into_pores(network, facets, spheres, centres.flat, spacing);
-  group_facets_into_throats(network, facets);
-  return network;
-}
-
 /// An empty ball between images is no wider than the box's diagonal: a margin of twice that never
 /// helps. A slender cell with few spheres would need images without number.
 void refuse_endless_images(const Spheres& spheres, double margin) {
@@ -210,19 +189,44 @@ void refuse_endless_images(const Spheres& spheres, double margin) {
 
 }  // namespace
 
+Cells find_cells(const Spheres& spheres) {
+  Cells cells{triangulate(spheres), {}};
+  cells.centres = cell_centres(cells.triangulation, spheres);
+  return cells;
+}
+
+std::vector<int> first_cells(const Cells& cells, const Spheres& spheres, double spacing) {
+  return join_cells(cells.centres, list_facets(cells.triangulation), spheres, spacing);
+}
+
+PoreNetwork network_of(Cells&& cells, const Spheres& spheres, double spacing) {
+  std::vector<Facet> facets = list_facets(cells.triangulation);
+  const std::vector<int> first = join_cells(cells.centres, facets, spheres, spacing);
+  PoreNetwork network;
+  network.vertex_sphere.resize(spheres.size());
+  std::iota(network.vertex_sphere.begin(), network.vertex_sphere.end(), 0);
+  network.cell_centres = std::move(cells.centres.places);
+  network.cell_vertices = std::move(cells.triangulation.vertices);
+  network.cell_neighbours = std::move(cells.triangulation.neighbours);
+  network.hidden = std::move(cells.triangulation.hidden);
+  make_pores_of_cells(network, first, cells.centres.flat);
+  group_facets_into_throats(network, facets);
+  return network;
+}
+
 PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin) {
   const double spacing = std::cbrt(spheres.volume / std::max(1, spheres.size()));
   PoreSpace space;
   const auto& periodic = spheres.periodic;
   if (std::find(periodic.begin(), periodic.end(), true) == periodic.end() || spheres.size() == 0) {
-    space.network = network_of(spheres, spacing);
+    space.network = network_of(find_cells(spheres), spheres, spacing);
     space.spheres = spheres;
   } else {
     double margin = 2.5 * spacing + 2.0 * spheres.radii.maxCoeff();
     for (;; margin *= 1.5) {
       refuse_endless_images(spheres, margin);
       Images images = replicate(spheres, margin);
-      const PoreNetwork all = network_of(images.spheres, spacing);
+      const PoreNetwork all = network_of(find_cells(images.spheres), images.spheres, spacing);
       if (fold(all, images, spheres, spacing, space.network)) {
         space.spheres = std::move(images.spheres);
         break;

@@ -1,10 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "network/cell_centres.hpp"
 #include "network/spheres.hpp"
+#include "network/triangulation.hpp"
 #include "pfv/network.hpp"
 
+#include <vector>
+
 namespace pfv {
+
+/// A triangulation with its dual vertices.
+struct Cells {
+  Triangulation triangulation;
+  CellCentres centres;
+};
+Cells find_cells(const Spheres& spheres);
+
+/// For each cell the first of those that are one pore with it. `spacing`: mean distance of the spheres, m.
+std::vector<int> first_cells(const Cells& cells, const Spheres& spheres, double spacing);
+
+/// The pores and throats that cells make. Cells may be missing beside others: no throat leads there.
+PoreNetwork network_of(Cells&& cells, const Spheres& spheres, double spacing);
 
 /// The network and the spheres that its vertices stand for: the packing's own or, with periodic axes,
 /// those and their images.

@@ -39,6 +39,7 @@ struct Spheres {
   Eigen::Vector3d edges;
   std::vector<WallSurface> walls;
   double volume = 0.0;  ///< of the container, m³
+  double mean_radius = 0.0;  ///< of all spheres in it, those that other ranks have too, m
   Eigen::VectorXd displaced;  ///< m³ of fluid that each takes the place of; empty: whole spheres
   std::array<bool, 3> periodic{false, false, false};
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  ///< of a periodic cell, m

@@ -46,8 +46,8 @@ struct Flat {
 int flats_of_cylinder(const Spheres& spheres, double radius) {
   constexpr double depth = 0.01;
   constexpr int fewest = 32, most = 256;
-  if (spheres.size() == 0) return fewest;
-  const double gap = depth * spheres.radii.mean() / radius;
+  if (!(spheres.mean_radius > 0.0)) return fewest;
+  const double gap = depth * spheres.mean_radius / radius;
   const int flats = static_cast<int>(std::ceil(pi / std::sqrt(2.0 * gap)));
   return std::min(std::max(flats, fewest), most);
 }

@@ -98,7 +98,7 @@ void close_what_round_off_hides(Conductances& conductances, const PoreNetwork& n
     double& c = conductances.value[t];
     if (c <= 0.0 || c >= least_of_its_pores * std::min(sum[i], sum[j])) continue;
     c = 0.0;
-    ++conductances.degenerate;
+    conductances.by_rule[t] = 1;
   }
 }
 
@@ -141,16 +141,15 @@ Conductances conductances(ConductanceLaw law, double viscosity, const PoreNetwor
   constexpr int piece_size = 512;
   Conductances result;
   result.value.assign(network.throats(), 0.0);
-  std::vector<int> by_rule((network.throats() + piece_size - 1) / piece_size, 0);
-  team.run(static_cast<int>(by_rule.size()), [&](int piece) {
+  result.by_rule.assign(network.throats(), 0);
+  team.run((network.throats() + piece_size - 1) / piece_size, [&](int piece) {
     const int last = std::min((piece + 1) * piece_size, network.throats());
     for (int t = piece * piece_size; t < last; ++t) {
       const Conductance own = conductance_of(law, viscosity, network, throats, spheres, t);
       result.value[t] = own.value;
-      by_rule[piece] += own.by_rule;
+      result.by_rule[t] = own.by_rule;
     }
   });
-  for (const int count : by_rule) result.degenerate += count;
   if (law == ConductanceLaw::open_throat) make_drag_isotropic(network, throats, spheres, result.value);
   close_what_round_off_hides(result, network);
   return result;

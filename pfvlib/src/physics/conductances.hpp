@@ -11,7 +11,7 @@ namespace pfv {
 /// Flow rate of each throat for a unit pressure difference, q = c (p_i - p_j), m³/(Pa s).
 struct Conductances {
   std::vector<double> value;
-  int degenerate = 0;  ///< throats whose law needed one of the rules below
+  std::vector<char> by_rule;  ///< degenerate: the law needed one of the rules below
 };
 
 /// Conductances by the law that the user chose.

@@ -248,10 +248,19 @@ class Surroundings {
   std::vector<View> views_;
 };
 
+/// What leans on a ghost may be unknown here.
+void take_resistances_of_owners(std::vector<OpenWaterDrag>& drags, int spheres, const Share& share) {
+  if (!share.ranks) return;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(9, spheres);
+  for (const OpenWaterDrag& drag : drags) all.col(drag.sphere) = drag.resistance.reshaped();
+  share.spheres.refresh(*share.ranks, all);
+  for (OpenWaterDrag& drag : drags) drag.resistance = all.col(drag.sphere).reshaped(3, 3);
+}
+
 /// A sphere that others lean on is braked by these reactions as well, and lacks so much less: R of each is the part >=
 /// 0 of what is missing less what the others' R do to it. A few damped rounds; what is left over is too much, not too
 /// little.
-void settle_reactions(std::vector<OpenWaterDrag>& drags, int spheres) {
+void settle_reactions(std::vector<OpenWaterDrag>& drags, int spheres, const Share& share) {
   constexpr int rounds = 6;
   std::vector<Matrix3d> missing, reactions;
   for (OpenWaterDrag& drag : drags) {
@@ -265,6 +274,7 @@ void settle_reactions(std::vector<OpenWaterDrag>& drags, int spheres) {
     for (std::size_t i = 0; i < drags.size(); ++i)
       drags[i].resistance =
           0.5 * (drags[i].resistance + positive_part(missing[i] - reactions[drags[i].sphere]));
+    take_resistances_of_owners(drags, spheres, share);
   }
 }
 
@@ -319,13 +329,13 @@ std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Sp
                                             const ForceMatrix& matrix, const std::vector<char>& imposed,
                                             const Container& container, double viscosity,
                                             const std::vector<ResistanceBlock>& others, const std::vector<int>& body,
-                                            bool still) {
+                                            bool still, const Share& share) {
   const std::vector<double> fractions = solid_fractions_around(network, throats, vertices);
   std::vector<int> open;
   for (int k = 0; k < static_cast<int>(fractions.size()); ++k)
-    if (fractions[k] < open_fraction) open.push_back(k);
+    if (fractions[k] < open_fraction && share.is_whole(k)) open.push_back(k);
   std::vector<OpenWaterDrag> drags;
-  if (open.empty()) return drags;
+  if (!share.any(!open.empty())) return drags;
   std::sort(open.begin(), open.end(), [&](int a, int b) { return spheres.ids[a] < spheres.ids[b]; });
   const ThroatLists lists(network);
   std::vector<Matrix3d> known(spheres.size(), Matrix3d::Zero());
@@ -344,7 +354,8 @@ std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Sp
       drags.push_back({group.spheres[i], group.unbounded[i].trace() / traces * missing, {}, Vector3d::Zero(), {}});
   }
   Surroundings(network, spheres, vertices, container, body, still).look(throats, drags);
-  settle_reactions(drags, spheres.size());
+  settle_reactions(drags, spheres.size(), share);
+  for (OpenWaterDrag& drag : drags) drag.is_own = share.owns_sphere(drag.sphere);
   drags.erase(std::remove_if(drags.begin(), drags.end(), [&](const OpenWaterDrag& drag) {
                 return (drag.neighbours.empty() && drag.faces.empty()) ||
                        drag.resistance.diagonal().maxCoeff() <= negligible * viscosity * spheres.radii[drag.sphere];
@@ -382,6 +393,7 @@ void add_open_water_forces(const std::vector<OpenWaterDrag>& drags, const Motion
     for (const auto& [column, weight, at] : drag.faces) {
       const Vector3d reaction = weight.transpose() * force;
       own -= reaction;
+      if (!drag.is_own) continue;
       loads.col(column).head<3>() += reaction;
       loads.col(column).tail<3>() += at.cross(reaction);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "network/spheres.hpp"
+#include "parallel/share.hpp"
 #include "physics/conductances.hpp"
 #include "physics/force_matrix.hpp"
 #include "physics/resistance.hpp"
@@ -34,6 +35,7 @@ struct OpenWaterDrag {
     Eigen::Vector3d at;      ///< its point nearest to the sphere, from the network's origin, m
   };
   std::vector<Face> faces;
+  bool is_own = true;  ///< a ghost's reactions on faces count at its owner
 };
 
 /// The drag that a network leaves out where water is open. A sphere that moves alone is braked at least as in
@@ -50,7 +52,7 @@ struct OpenWaterDrag {
 /// slip or open one the image of a Stokeslet; nearer than 1.5 radii that of 1.5. In a round wall no less than
 /// Haberman's on its axis. Spheres of a rigid body share the drag that they have together (physics/bead_mobility.hpp).
 ///
-/// In a dense bed there is none. Pure; cost: a pass over S, and some 20 µs a sphere in open water.
+/// In a dense bed there is none. On several ranks of own spheres and the ghosts beside them; collective. Pure; cost: a pass over S, and some 20 µs a sphere in open water.
 /// `imposed`: of each pore, whether its pressure is given; `matrix`: S. `body`: of each sphere, -1 for none; or no
 /// entries. `still`: faces count among what stands around; not where water is driven through, which flows past them.
 std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices,
@@ -58,7 +60,7 @@ std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Sp
                                             const ForceMatrix& matrix, const std::vector<char>& imposed,
                                             const Container& container, double viscosity,
                                             const std::vector<ResistanceBlock>& others, const std::vector<int>& body,
-                                            bool still);
+                                            bool still, const Share& share = {});
 
 /// Whether nothing drives water through the container: no macroscopic gradient and, of two openings and more, neither a
 /// flux nor pressures that differ.

@@ -81,7 +81,7 @@ PermeabilityError permeability_error(const PoreNetwork& network, const Throats& 
                                      const Spheres& spheres, ConductanceLaw law, double viscosity,
                                      const Conductances& conductances,
                                      const std::vector<double>& dissipation,
-                                     double solid_fraction) {
+                                     double solid_fraction, const Share& share) {
   Means sums;
   double total = 0.0;
   for (int t = 0; t < network.throats(); ++t) {
@@ -100,6 +100,9 @@ PermeabilityError permeability_error(const PoreNetwork& network, const Throats& 
     sums.walls += weight * throat.wall_share;
     if (size_ratio(network, spheres, t) > largest_size_ratio * (1.0 + 1e-9)) sums.unlike += weight;
   }
+  if (share.ranks)
+    for (double* part : {&sums.error, &sums.bias, &sums.degenerate, &sums.hidden, &sums.walls, &sums.unlike, &total})
+      *part = share.sum(*part);
   if (!(total > 0.0)) return {};
   PermeabilityError result;
   result.relative =

@@ -34,6 +34,6 @@ PermeabilityError permeability_error(const PoreNetwork& network, const Throats& 
                                      const Spheres& spheres, ConductanceLaw law, double viscosity,
                                      const Conductances& conductances,
                                      const std::vector<double>& dissipation,
-                                     double solid_fraction);
+                                     double solid_fraction, const Share& share = {});
 
 }  // namespace pfv

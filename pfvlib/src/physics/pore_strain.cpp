@@ -12,19 +12,26 @@ namespace pfv {
 
 double mean_pore_strain(const PoreNetwork& network, const Conductances& conductances,
                         const Eigen::VectorXd& pressures, const Eigen::Vector3d& gradient,
-                        const Eigen::VectorXd& changes, const std::vector<double>& volumes) {
-  const auto strain_of = [&](int pore) { return std::abs(changes[pore]) / volumes[pore]; };
+                        const Eigen::VectorXd& changes, const std::vector<double>& volumes, const Share& share) {
+  Eigen::VectorXd all = changes;
+  if (share.ranks) share.pores.refresh(*share.ranks, all);
+  const auto strain_of = [&](int pore) { return std::abs(all[pore]) / volumes[pore]; };
   double strained = 0.0, power = 0.0;
   for (int t = 0; t < network.throats(); ++t) {
     const auto [i, j] = network.throat_pores[t];
+    if (!share.owns_pore(i)) continue;
     const double pressure = driving_pressure(network, t, pressures, gradient);
     const double lost = conductances.value[t] * pressure * pressure;
     power += lost;
     strained += 0.5 * lost * (strain_of(i) + strain_of(j));
   }
-  const Eigen::Map<const Eigen::VectorXd> volume(volumes.data(), changes.size());
-  const double of_space = changes.cwiseAbs().sum() / volume.sum();
-  return std::max(of_space, power > 0.0 ? strained / power : 0.0);
+  Eigen::VectorXd volume = Eigen::Map<const Eigen::VectorXd>(volumes.data(), changes.size());
+  leave_to_owners(share, volume);
+  Eigen::VectorXd sums(4);
+  sums << strained, power, changes.cwiseAbs().sum(), volume.sum();
+  share.add(sums);
+  const double of_space = sums[2] / sums[3];
+  return std::max(of_space, sums[1] > 0.0 ? sums[0] / sums[1] : 0.0);
 }
 
 }  // namespace pfv

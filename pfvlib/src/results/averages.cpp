@@ -7,6 +7,8 @@
 #include "physics/pore_velocities.hpp"
 #include "physics/sphere_stresses.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace pfv {
@@ -154,7 +156,8 @@ double plane_pressure(BuiltNetwork& built, const Solution& solution, int axis, d
 
 double mean_pressure(const BuiltNetwork& built, const Solution& solution) {
   const Eigen::VectorXd volumes = storage_volumes(built.throats);
-  return volumes.size() > 0 ? volumes.dot(solution.pressures) / volumes.sum() : 0.0;
+  const double volume = built.share.sum(volumes.sum()), sum = built.share.sum(volumes.dot(solution.pressures));
+  return volume > 0.0 ? sum / volume : 0.0;
 }
 
 std::optional<std::string> warning_of(const EmptySpace& empty) {
@@ -169,21 +172,44 @@ std::optional<std::string> warning_of(const EmptySpace& empty) {
   return text.str();
 }
 
+namespace {
+
+/// Place and volume of the largest pore of all ranks.
+void find_largest(const BuiltNetwork& built, double sphere, EmptySpace& empty) {
+  const std::vector<double>& volumes = built.throats.pore_fluid_volume;
+  const auto found = std::max_element(volumes.begin(), volumes.end());
+  const double here = found == volumes.end() ? 0.0 : *found, largest = built.share.largest(here);
+  Eigen::VectorXd place = Eigen::VectorXd::Zero(4);  // and how many have one as large
+  if (found != volumes.end() && here == largest)
+    place << built.network.pore_centres.col(found - volumes.begin()) + built.network.origin, 1.0;
+  built.share.add(place);
+  empty.largest = largest / sphere;
+  if (place[3] > 0.0) empty.place = place.head<3>() / place[3];
+}
+
+}  // namespace
+
 EmptySpace empty_space(const BuiltNetwork& built) {
   const std::vector<double>& volumes = built.throats.pore_fluid_volume;
+  const Spheres& spheres = built.grains.spheres;
   EmptySpace empty;
-  if (volumes.empty() || built.grains.spheres.size() == 0) return empty;
-  const double sphere = 4.0 / 3.0 * pi * built.grains.spheres.radii.array().cube().mean();
-  double sum = 0.0, large = 0.0;
-  int largest = 0;
-  for (int pore = 0; pore < built.network.pores(); ++pore) {
-    sum += volumes[pore];
-    if (volumes[pore] > EmptySpace::spheres_a_pore * sphere) large += volumes[pore];
-    if (volumes[pore] > volumes[largest]) largest = pore;
+  Eigen::VectorXd cubes = Eigen::VectorXd::Zero(2);
+  for (int k = 0; k < spheres.size(); ++k)
+    if (built.share.owns_sphere(k)) {
+      cubes[0] += std::pow(spheres.radii[k], 3);
+      ++cubes[1];
+    }
+  built.share.add(cubes);
+  if (pore_count(built) == 0 || cubes[1] == 0.0) return empty;
+  const double sphere = 4.0 / 3.0 * pi * cubes[0] / cubes[1];
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(2);
+  for (const double volume : volumes) {
+    sums[0] += volume;
+    if (volume > EmptySpace::spheres_a_pore * sphere) sums[1] += volume;
   }
-  empty.part = sum > 0.0 ? large / sum : 0.0;
-  empty.largest = volumes[largest] / sphere;
-  empty.place = built.network.pore_centres.col(largest) + built.network.origin;
+  built.share.add(sums);
+  empty.part = sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
+  find_largest(built, sphere, empty);
   return empty;
 }
 

@@ -7,35 +7,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pfv {
 
-Totals totals_of(const Container& container, const std::vector<BoundaryPart>& parts) {
-  std::vector<double> of_boundary(boundary_count(container), 0.0);
-  Totals totals;
+BoundarySums sums_of(const Container& container, const std::vector<BoundaryPart>& parts) {
+  BoundarySums sums;
+  sums.inflow.setZero(boundary_count(container));
+  sums.pressure = sums.parts = sums.inflow;
   for (const BoundaryPart& part : parts) {
-    of_boundary[part.boundary] += part.inflow;
-    totals.gross += std::abs(part.inflow);
+    sums.inflow[part.boundary] += part.inflow;
+    sums.pressure[part.boundary] += part.pressure;
+    ++sums.parts[part.boundary];
+    sums.gross += std::abs(part.inflow);
   }
-  for (const double q : of_boundary) (q > 0.0 ? totals.inflow : totals.outflow) += std::abs(q);
+  return sums;
+}
+
+Totals totals_of(const BoundarySums& sums) {
+  Totals totals;
+  totals.gross = sums.gross;
+  for (const double q : sums.inflow) (q > 0.0 ? totals.inflow : totals.outflow) += std::abs(q);
   return totals;
 }
 
-std::vector<OpeningResult> openings_of(const Container& container, const std::vector<BoundaryPart>& parts) {
-  const int faces = container.face_count();
-  std::vector<OpeningResult> openings(boundary_count(container) - faces);
-  std::vector<double> sums(openings.size(), 0.0);
-  for (const BoundaryPart& part : parts) {
-    if (part.boundary < faces) continue;
-    OpeningResult& opening = openings[part.boundary - faces];
-    ++opening.pores;
-    opening.flux += part.inflow;
-    sums[part.boundary - faces] += part.pressure;
-  }
-  for (std::size_t i = 0; i < openings.size(); ++i) {
-    openings[i].name = boundary_name(container, faces + static_cast<int>(i));
-    if (openings[i].pores > 0)
-      openings[i].pressure = sums[i] / static_cast<double>(openings[i].pores);
+std::vector<OpeningResult> openings_of(const Container& container, const BoundarySums& sums) {
+  std::vector<OpeningResult> openings;
+  for (int b = container.face_count(); b < boundary_count(container); ++b) {
+    OpeningResult opening;
+    opening.name = boundary_name(container, b);
+    opening.pores = static_cast<std::int64_t>(sums.parts[b]);
+    opening.flux = sums.inflow[b];
+    if (opening.pores > 0) opening.pressure = sums.pressure[b] / sums.parts[b];
+    openings.push_back(std::move(opening));
   }
   return openings;
 }

@@ -26,9 +26,16 @@ struct BoundaryPart {
   double pressure;  ///< Pa
 };
 
-Totals totals_of(const Container& container, const std::vector<BoundaryPart>& parts);
+/// Of the parts of each boundary: their flow rates and pressures, and how many they are.
+struct BoundarySums {
+  Eigen::VectorXd inflow, pressure, parts;
+  double gross = 0.0;  ///< magnitudes of all flow rates
+};
+BoundarySums sums_of(const Container& container, const std::vector<BoundaryPart>& parts);
+
+Totals totals_of(const BoundarySums& sums);
 /// What crosses each patch and region.
-std::vector<OpeningResult> openings_of(const Container& container, const std::vector<BoundaryPart>& parts);
+std::vector<OpeningResult> openings_of(const Container& container, const BoundarySums& sums);
 
 /// The net of all fluxes over the largest of them. Where inflow and outflow cancel within each
 /// boundary (a wave on one face) their gross sum takes its place, and where all of them are round-off

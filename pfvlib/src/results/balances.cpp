@@ -59,6 +59,7 @@ std::vector<BoundaryPart> boundary_parts(const BuiltNetwork& built, const Soluti
     const PoreBoundaries::Contact& contact = built.boundaries.contacts[c];
     const bool of_region = contact.boundary >= first_region(solution.container);
     if (of_region && contact.face != PoreBoundaries::inside) continue;  // it enters inside
+    if (!built.share.owns_pore(contact.pore)) continue;
     parts.push_back({contact.boundary, inflows[c], solution.pressures[contact.pore]});
   }
   return parts;
@@ -68,13 +69,12 @@ double traffic(const BuiltNetwork& built, const Solution& solution) {
   const PoreNetwork& network = built.network;
   double sum = gross_rates(built, solution.motion).sum();
   for (int t = 0; t < network.throats(); ++t)
-    sum += built.conductances.value[t] *
-           (std::abs(solution.relative_pressures[network.throat_pores[t][0]]) +
-            std::abs(solution.relative_pressures[network.throat_pores[t][1]]));
+    for (const int pore : network.throat_pores[t])
+      if (built.share.owns_pore(pore)) sum += built.conductances.value[t] * std::abs(solution.relative_pressures[pore]);
   if (built.kept.compressible())
     sum += built.kept.storage.dot(solution.pressures.cwiseAbs() +
                                   solution.previous_pressures.cwiseAbs());
-  return sum;
+  return built.share.sum(sum);
 }
 
 namespace {
@@ -98,14 +98,15 @@ double force_balance_error(const BuiltNetwork& built, const Solution& solution,
   if (solution.loads.cols() == 0) return 0.0;
   const int spheres = built.grains.spheres.size();
   const Eigen::Vector3d driven = driving_force(built, solution);
-  Eigen::Vector3d sum = driven + solution.loads.topLeftCorner(3, spheres).rowwise().sum();
+  Eigen::VectorXd of_spheres = solution.loads.topLeftCorner(3, spheres).rowwise().sum();
+  built.share.add(of_spheres);
+  Eigen::Vector3d sum = driven + of_spheres;
   for (const FaceResult& face : faces) sum += face.force_pressure + face.force_viscous;
-  const double largest_pressure =
-      solution.pressures.size() > 0 ? solution.pressures.cwiseAbs().maxCoeff() : 0.0;
+  const double highest = largest_pressure(built, solution.pressures);
   // drags in open water may be all there is
-  const double largest =
-      spheres > 0 ? solution.loads.topLeftCorner(3, spheres).colwise().norm().maxCoeff() : 0.0;
-  return force_balance_error(sum, largest_pressure, solution.container, std::max(driven.norm(), largest));
+  const double largest = built.share.largest(
+      spheres > 0 ? solution.loads.topLeftCorner(3, spheres).colwise().norm().maxCoeff() : 0.0);
+  return force_balance_error(sum, highest, solution.container, std::max(driven.norm(), largest));
 }
 
 Balance balance_of(const BuiltNetwork& built, const Solution& solution, std::int64_t& solves) {
@@ -119,6 +120,8 @@ Balance balance_of(const BuiltNetwork& built, const Solution& solution, std::int
     const int face = built.boundaries.contacts[c].face;
     if (face != PoreBoundaries::inside) balance.faces[face].flux += balance.contact_inflows[c];
   }
+  if (built.share.ranks)
+    for (FaceResult& face : balance.faces) face.flux = built.share.sum(face.flux);
   return balance;
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace pfv {
 
@@ -46,9 +47,13 @@ std::optional<double> permeability(const BuiltNetwork& built, double viscosity,
   const std::optional<std::array<int, 2>> faces = faces_of_flow(solution.container);
   if (!faces) return {};
   std::array<double, 2> pressures{0.0, 0.0};
-  for (const auto& contact : built.boundaries.contacts)
-    for (int i = 0; i < 2; ++i)
-      if (contact.face == (*faces)[i]) pressures[i] = solution.relative_pressures[contact.pore];
+  for (int i = 0; i < 2; ++i) {
+    double here = -std::numeric_limits<double>::infinity();  // all of a face are equal
+    for (const auto& contact : built.boundaries.contacts)
+      if (contact.face == (*faces)[i] && built.share.owns_pore(contact.pore))
+        here = solution.relative_pressures[contact.pore];
+    pressures[i] = built.share.largest(here);
+  }
   return permeability_of(solution.container, *faces, viscosity, totals, pressures);
 }
 
@@ -91,7 +96,7 @@ std::optional<TensorFlow> tensor_flow(const BuiltNetwork& built, double viscosit
 std::vector<double> throat_dissipation(const BuiltNetwork& built, const Solution& solution,
                                        std::vector<double> fluxes) {
   for (int t = 0; t < built.network.throats(); ++t)
-    fluxes[t] *= driving_pressure(built.network, t, solution.relative_pressures,
+    fluxes[t] *= !built.share.owns_pore(built.network.throat_pores[t][0]) ? 0.0 : driving_pressure(built.network, t, solution.relative_pressures,
                                   solution.container.pressure_gradient);
   return fluxes;
 }
@@ -100,7 +105,7 @@ void add_error(Report& report, const BuiltNetwork& built, const Problem& problem
                const std::vector<double>& dissipation) {
   PermeabilityError error = permeability_error(
       built.network, built.throats, built.vertices, problem.options.conductance,
-      problem.fluid.viscosity, built.conductances, dissipation, 1.0 - report.porosity);
+      problem.fluid.viscosity, built.conductances, dissipation, 1.0 - report.porosity, built.share);
   report.permeability_error = error.relative;
   report.degenerate_share = error.degenerate_share;
   report.outside_range = std::move(error.outside_range);

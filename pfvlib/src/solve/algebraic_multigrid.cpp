@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only translation unit that includes hypre. Rows are numbered globally from `first_row`, and the communicator
-// stands in one place: for several ranks each hands in its own rows.
+// The only translation unit that includes hypre.
 #include "solve/algebraic_multigrid.hpp"
 
-#include "solve/mpi_session.hpp"
+#include "parallel/mpi_ranks.hpp"
+#include "parallel/mpi_session.hpp"
+#include "solve/row_share.hpp"
 
 #include <HYPRE.h>
 #include <HYPRE_IJ_mv.h>
@@ -18,14 +19,36 @@
 namespace pfv {
 namespace {
 
-constexpr HYPRE_BigInt first_row = 0;
-
-MPI_Comm communicator() {
+void start() {
   MpiSession::start();
   static const bool is_started = HYPRE_Init() == 0;  // does nothing where the host program has done so
   if (!is_started) throw std::runtime_error("hypre did not start");
-  return MPI_COMM_SELF;
 }
+
+/// Where this rank's rows are in the whole matrix, and who has the others.
+struct Rows {
+  Rows(const SymmetricMatrix& matrix, const RowShare* shared) {
+    start();
+    if (!shared) {
+      here.resize(static_cast<std::size_t>(matrix.size()));
+      std::iota(here.begin(), here.end(), 0);
+      number.assign(here.begin(), here.end());
+      return;
+    }
+    communicator = dynamic_cast<const MpiRanks&>(*shared->ranks).communicator();
+    first = static_cast<HYPRE_BigInt>(shared->first);
+    number.assign(shared->number.begin(), shared->number.end());
+    for (int row = 0; row < matrix.size(); ++row)
+      if (shared->own[static_cast<std::size_t>(row)]) here.push_back(row);
+  }
+  HYPRE_Int size() const { return static_cast<HYPRE_Int>(here.size()); }
+  HYPRE_BigInt last() const { return first + size() - 1; }
+
+  MPI_Comm communicator = MPI_COMM_SELF;
+  HYPRE_BigInt first = 0;
+  std::vector<int> here;             ///< own rows among those of the matrix that is given
+  std::vector<HYPRE_BigInt> number;  ///< of each of those; -1: left out
+};
 
 /// hypre collects its errors in a flag, which may be one of the host program before.
 void throw_error(const char* what) {
@@ -39,8 +62,8 @@ void throw_error(const char* what) {
 
 class HypreVector {
  public:
-  explicit HypreVector(HYPRE_Int size) : size_(size) {
-    HYPRE_IJVectorCreate(communicator(), first_row, first_row + size - 1, &vector_);
+  explicit HypreVector(const Rows& rows) : size_(rows.size()) {
+    HYPRE_IJVectorCreate(rows.communicator, rows.first, rows.last(), &vector_);
     HYPRE_IJVectorSetObjectType(vector_, HYPRE_PARCSR);
     HYPRE_IJVectorInitialize(vector_);
     HYPRE_IJVectorAssemble(vector_);
@@ -49,13 +72,13 @@ class HypreVector {
   HypreVector(const HypreVector&) = delete;
   HypreVector& operator=(const HypreVector&) = delete;
 
-  HYPRE_ParVector get() const {
+  HYPRE_ParVector object() const {
     void* object = nullptr;
     HYPRE_IJVectorGetObject(vector_, &object);
     return static_cast<HYPRE_ParVector>(object);
   }
   void set(const Eigen::VectorXd& values) { HYPRE_IJVectorSetValues(vector_, size_, nullptr, values.data()); }
-  void copy_to(Eigen::VectorXd& values) const {
+  void get(Eigen::VectorXd& values) const {
     values.resize(size_);
     HYPRE_IJVectorGetValues(vector_, size_, nullptr, values.data());
   }
@@ -67,25 +90,34 @@ class HypreVector {
 
 class HypreMatrix {
  public:
-  explicit HypreMatrix(const SymmetricMatrix& matrix) {
-    const HYPRE_Int size = matrix.size();
-    HYPRE_IJMatrixCreate(communicator(), first_row, first_row + size - 1, first_row, first_row + size - 1, &matrix_);
+  HypreMatrix(const SymmetricMatrix& matrix, const Rows& rows) {
+    std::vector<HYPRE_Int> entries;
+    std::vector<HYPRE_BigInt> numbers, columns;
+    std::vector<double> values;
+    columns.reserve(matrix.column.size());
+    values.reserve(matrix.column.size());
+    for (const int row : rows.here) {
+      const std::size_t before = columns.size();
+      for (int k = matrix.row_begin[row]; k < matrix.row_begin[row + 1]; ++k) {
+        if (rows.number[matrix.column[k]] < 0) continue;
+        columns.push_back(rows.number[matrix.column[k]]);
+        values.push_back(matrix.value[k]);
+      }
+      numbers.push_back(rows.number[row]);
+      entries.push_back(static_cast<HYPRE_Int>(columns.size() - before));
+    }
+    HYPRE_IJMatrixCreate(rows.communicator, rows.first, rows.last(), rows.first, rows.last(), &matrix_);
     HYPRE_IJMatrixSetObjectType(matrix_, HYPRE_PARCSR);
-    std::vector<HYPRE_Int> entries(matrix.row_begin.size());
-    std::adjacent_difference(matrix.row_begin.begin(), matrix.row_begin.end(), entries.begin());
-    std::vector<HYPRE_BigInt> rows(static_cast<std::size_t>(size));
-    std::iota(rows.begin(), rows.end(), first_row);
-    const std::vector<HYPRE_BigInt> columns(matrix.column.begin(), matrix.column.end());  // first_row is 0
-    HYPRE_IJMatrixSetRowSizes(matrix_, entries.data() + 1);
+    HYPRE_IJMatrixSetRowSizes(matrix_, entries.data());
     HYPRE_IJMatrixInitialize(matrix_);
-    HYPRE_IJMatrixSetValues(matrix_, size, entries.data() + 1, rows.data(), columns.data(), matrix.value.data());
+    HYPRE_IJMatrixSetValues(matrix_, rows.size(), entries.data(), numbers.data(), columns.data(), values.data());
     HYPRE_IJMatrixAssemble(matrix_);
   }
   ~HypreMatrix() { HYPRE_IJMatrixDestroy(matrix_); }
   HypreMatrix(const HypreMatrix&) = delete;
   HypreMatrix& operator=(const HypreMatrix&) = delete;
 
-  HYPRE_ParCSRMatrix get() const {
+  HYPRE_ParCSRMatrix object() const {
     void* object = nullptr;
     HYPRE_IJMatrixGetObject(matrix_, &object);
     return static_cast<HYPRE_ParCSRMatrix>(object);
@@ -123,18 +155,21 @@ void choose_method(HYPRE_Solver amg) {
 }  // namespace
 
 struct AlgebraicMultigrid::Hierarchy {
-  explicit Hierarchy(const SymmetricMatrix& rows) : matrix(rows), right_side(rows.size()), solution(rows.size()) {
+  Hierarchy(const SymmetricMatrix& given, const RowShare* shared)
+      : rows(given, shared), matrix(given, rows), right_side(rows), solution(rows) {
     HYPRE_BoomerAMGCreate(&amg);
     choose_method(amg);
-    HYPRE_BoomerAMGSetup(amg, matrix.get(), right_side.get(), solution.get());
+    HYPRE_BoomerAMGSetup(amg, matrix.object(), right_side.object(), solution.object());
   }
   ~Hierarchy() { HYPRE_BoomerAMGDestroy(amg); }
   Hierarchy(const Hierarchy&) = delete;
   Hierarchy& operator=(const Hierarchy&) = delete;
 
+  Rows rows;
   HypreMatrix matrix;
   HypreVector right_side, solution;
   HYPRE_Solver amg = nullptr;
+  Eigen::VectorXd own;  ///< entries of own rows, on their way
 };
 
 AlgebraicMultigrid::AlgebraicMultigrid() = default;
@@ -142,10 +177,10 @@ AlgebraicMultigrid::~AlgebraicMultigrid() = default;
 
 void AlgebraicMultigrid::clear() { hierarchy_.reset(); }
 
-void AlgebraicMultigrid::build(const SymmetricMatrix& matrix) {
+void AlgebraicMultigrid::build(const SymmetricMatrix& matrix, const RowShare* rows) {
   clear();  // its memory is the new one's
   HYPRE_ClearAllErrors();
-  auto fresh = std::make_unique<Hierarchy>(matrix);
+  auto fresh = std::make_unique<Hierarchy>(matrix, rows);
   throw_error("the hierarchy was not built");
   hierarchy_ = std::move(fresh);
 }
@@ -153,11 +188,14 @@ void AlgebraicMultigrid::build(const SymmetricMatrix& matrix) {
 void AlgebraicMultigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
   Hierarchy& h = *hierarchy_;
   HYPRE_ClearAllErrors();
-  h.right_side.set(r);
-  HYPRE_ParVectorSetConstantValues(h.solution.get(), 0.0);
-  HYPRE_BoomerAMGSolve(h.amg, h.matrix.get(), h.right_side.get(), h.solution.get());
+  h.own = r(h.rows.here);
+  h.right_side.set(h.own);
+  HYPRE_ParVectorSetConstantValues(h.solution.object(), 0.0);
+  HYPRE_BoomerAMGSolve(h.amg, h.matrix.object(), h.right_side.object(), h.solution.object());
   throw_error("a cycle was not finished");
-  h.solution.copy_to(z);
+  h.solution.get(h.own);
+  z.setZero(r.size());
+  z(h.rows.here) = h.own;
 }
 
 }  // namespace pfv

@@ -10,7 +10,7 @@
 #include "solve/amesos2_cholesky.hpp"
 #include "solve/checked_solver.hpp"
 #include "solve/fill_reducing_ordering.hpp"
-#include "solve/mpi_session.hpp"
+#include "parallel/mpi_session.hpp"
 #include "problem/solver_abilities.hpp"
 #include "sparse/sparse_error.hpp"
 

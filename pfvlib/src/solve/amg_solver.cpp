@@ -41,11 +41,40 @@ void AmgSolver::analyze_pattern(const SymmetricMatrix& matrix, const Eigen::Matr
 }
 
 void AmgSolver::factor_values(const SymmetricMatrix& matrix) {
-  keep_values(matrix);
-  held_ = row_sums(matrix);
+  if (rows_) take_own_rows(matrix);
+  else keep_values(matrix);
+  held_ = row_sums(matrix_);
   refuse_lost_pressures();
-  last_.forget();
-  multigrid_.build(matrix);
+  last_.forget(ranks());
+  multigrid_.build(matrix_, rows_.get());
+  if (rows_) solve_for_borders();
+}
+
+/// The rows of others stay, empty, so that an entry of x has one place.
+void AmgSolver::take_own_rows(const SymmetricMatrix& matrix) {
+  borders_.take(matrix, *rows_);
+  matrix_.value = matrix.value;
+  together([&] {
+    for (int row = 0; row < size(); ++row) {
+      if (!rows_->own[row])
+        std::fill(matrix_.value.begin() + matrix_.row_begin[row], matrix_.value.begin() + matrix_.row_begin[row + 1], 0.0);
+      else if (!(matrix.value[diagonal_[row]] > 0.0))
+        fail_at(row);
+    }
+  });
+}
+
+void AmgSolver::solve_for_borders() {
+  constexpr double beyond = 0.1;  // what is left of these solutions is left of each that follows
+  if (borders_.count() == 0) return;
+  const double tolerance = tolerance_;
+  tolerance_ *= beyond;
+  std::vector<Eigen::VectorXd> solutions(borders_.count(), Eigen::VectorXd::Zero(size()));
+  for (int s = 0; s < borders_.count(); ++s)
+    if (largest(borders_.column(s)) > 0.0) iterate(borders_.column(s), solutions[s]);
+  tolerance_ = tolerance;
+  borders_.take_solutions(std::move(solutions), *rows_);
+  last_.forget(ranks());
 }
 
 /// Conjugate gradients would end at any pressure of a group of pores that nothing holds. A throat that is rounding
@@ -56,15 +85,40 @@ void AmgSolver::refuse_lost_pressures() {
     for (int k = matrix_.row_begin[row]; k < matrix_.row_begin[row + 1]; ++k)
       if (std::abs(matrix_.value[k]) > 4.0 * epsilon * matrix_.value[diagonal_[row]])
         groups.join(row, matrix_.column[k]);
-  std::vector<char> is_held(static_cast<std::size_t>(size()), 0);
+  Eigen::VectorXd is_held = Eigen::VectorXd::Zero(size());
   for (int row = 0; row < size(); ++row)
-    if (held_[row] != 0.0) is_held[groups.find(row)] = 1;
+    if (held_[row] != 0.0) is_held[groups.find(row)] = 1.0;
+  if (rows_) spread_largest(*rows_, groups, is_held);
+  together([&] {
+    for (int row = 0; row < size(); ++row)
+      if (is_held[groups.find(row)] == 0.0 && (!rows_ || rows_->own[row])) fail_at(row);
+  });
+}
+
+void AmgSolver::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
+  multigrid_.apply(r, z);
+  if (rows_) rows_->exchange.refresh(*rows_->ranks, z);
+}
+
+void AmgSolver::solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  if (!rows_) {
+    ConjugateGradient::solve_system(b, x);
+    return;
+  }
+  Eigen::VectorXd own = b;
+  const Eigen::VectorXd at_borders = borders_.take_out(own, *rows_);
   for (int row = 0; row < size(); ++row)
-    if (!is_held[groups.find(row)]) fail_at(row);
+    if (!rows_->own[row]) own[row] = 0.0;
+  borders_.begin(x, *rows_);
+  // all of it is 0 nowhere: where b is, y is, too
+  if (largest(own) == 0.0) x.setZero();
+  else ConjugateGradient::solve_system(own, x);
+  borders_.put_in(at_borders, x, *rows_);
 }
 
 void AmgSolver::begin(const Eigen::VectorXd&, Eigen::VectorXd& x) {
-  if (!x.allFinite()) x.setZero();
+  const bool lost = !x.allFinite();
+  if (rows_ ? rows_->ranks->any(lost) : lost) x.setZero();
 }
 
 /// By differences of pressures, which keep the digits of what flows where pressures are large.
@@ -84,7 +138,13 @@ void AmgSolver::measure(const Eigen::VectorXd& b, const Eigen::VectorXd& x, Defe
     flow += 0.25 * gross * gross;
     magnitude += uncancelled * uncancelled;
   }
-  defect.size = defect.r.norm();
+  if (rows_) {
+    double sums[2] = {flow, magnitude};
+    rows_->ranks->add(sums, 2);
+    flow = sums[0];
+    magnitude = sums[1];
+  }
+  defect.size = norm(defect.r);
   defect.flow = std::sqrt(flow);
   defect.rounding = 2.0 * epsilon * std::sqrt(magnitude);
 }
@@ -100,7 +160,7 @@ double AmgSolver::tolerated(const Defect& defect) const {
 bool AmgSolver::is_solved(const Eigen::VectorXd& x, const Defect& defect) const {
   if (!(defect.size <= tolerated(defect))) return false;
   const double part = defect.size <= defect.rounding ? std::max(tolerance_, lost) : tolerance_;
-  return error().lpNorm<Eigen::Infinity>() <= part * x.lpNorm<Eigen::Infinity>();
+  return largest(error()) <= part * largest(x);
 }
 
 /// A solution that is good enough stays as it is and leaves no trace, so that a step that is looked at twice, as
@@ -118,14 +178,14 @@ bool AmgSolver::is_solved_by_last(const Eigen::VectorXd& b, Eigen::VectorXd& x, 
 void AmgSolver::iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   iterations_ = 0;
   Defect recurrence, seen;
-  if (!x.isZero(0.0) && is_solved_by_last(b, x, recurrence)) return;
+  if (largest(x) != 0.0 && is_solved_by_last(b, x, recurrence)) return;
   measure(b, x, recurrence);
   set_out(recurrence.r);
   if (is_solved(x, recurrence)) return;
   double end = tolerated(recurrence);
   while (iterations_ < most_cycles && advance(x, recurrence.r)) {
     ++iterations_;
-    recurrence.size = recurrence.r.norm();
+    recurrence.size = norm(recurrence.r);
     if (recurrence.size > end && iterations_ != first_look) continue;
     measure(b, x, seen);
     if (is_solved(x, seen)) return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solve/algebraic_multigrid.hpp"
+#include "solve/borders.hpp"
 #include "solve/iterative_solvers.hpp"
 #include "solve/last_solutions.hpp"
 
@@ -12,12 +13,14 @@ namespace pfv {
 /// `tolerance` of the flow through them (2-norms) and the error of the pressures, as a V-cycle sees it, below
 /// `tolerance` of the largest, or where both are rounding. An x that is not 0 is the last solution of a sequence:
 /// the solve sets out from it and the changes before; the bytes of x are then those of the sequence.
+/// On several ranks each has its own rows, and the sums of the iterations go over all.
 class AmgSolver final : public ConjugateGradient {
  public:
   /// `changes_kept`: doc/solvers.md has how many pay.
   explicit AmgSolver(double tolerance, std::size_t changes_kept = 6)
       : ConjugateGradient(SolverKind::amg, tolerance), last_(changes_kept) {}
   int iterations() const override { return iterations_; }
+  void share_rows(std::shared_ptr<const RowShare> rows) override { rows_ = std::move(rows); }
 
  private:
   /// What x leaves of A x = b.
@@ -32,7 +35,11 @@ class AmgSolver final : public ConjugateGradient {
   void factor_values(const SymmetricMatrix& matrix) override;
   void begin(const Eigen::VectorXd& b, Eigen::VectorXd& x) override;
   void iterate(const Eigen::VectorXd& b, Eigen::VectorXd& x) override;
-  void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const override { multigrid_.apply(r, z); }
+  void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const override;
+  const Ranks* ranks() const override { return rows_ ? rows_->ranks.get() : nullptr; }
+  void solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x) override;
+  void take_own_rows(const SymmetricMatrix& matrix);
+  void solve_for_borders();
   void refuse_lost_pressures();
   double tolerated(const Defect& defect) const;
   void measure(const Eigen::VectorXd& b, const Eigen::VectorXd& x, Defect& defect) const;
@@ -41,6 +48,8 @@ class AmgSolver final : public ConjugateGradient {
 
   AlgebraicMultigrid multigrid_;
   LastSolutions last_;
+  std::shared_ptr<const RowShare> rows_;  ///< null on one rank
+  Borders borders_;
   Eigen::VectorXd held_;  ///< of each row: its conductance to imposed pressures, its storage, its pin
   int iterations_ = 0;
 };

@@ -58,10 +58,15 @@ void CheckedSolver::guarded(const char* phase_name, const Phase& phase) const {
   }
 }
 
+void CheckedSolver::together(const std::function<void()>& check) const {
+  if (ranks()) ranks()->together(check);
+  else check();
+}
+
 void CheckedSolver::order(const SymmetricMatrix& matrix, const Eigen::Matrix3Xd& coordinates) {
   is_ordered_ = is_factored_ = false;
   size_ = matrix.size();
-  if (size_ > 0) guarded("ordering", [&] { analyze_pattern(matrix, coordinates); });
+  if (!is_idle()) guarded("ordering", [&] { analyze_pattern(matrix, coordinates); });
   is_ordered_ = true;
 }
 
@@ -69,9 +74,11 @@ void CheckedSolver::factor(const SymmetricMatrix& matrix) {
   is_factored_ = false;
   require(is_ordered_, "factor was called before order");
   require(matrix.size() == size_, "factor was given a matrix of another size than order");
-  if (size_ > 0) {
-    require(has_pattern_of(matrix), "factor was given another pattern than order");
-    require_finite_values(matrix);
+  if (!is_idle()) {
+    together([&] {
+      require(has_pattern_of(matrix), "factor was given another pattern than order");
+      require_finite_values(matrix);
+    });
     guarded("factorisation", [&] { factor_values(matrix); });
   }
   is_factored_ = true;
@@ -81,10 +88,12 @@ void CheckedSolver::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   require(is_factored_, "solve was called without a factor");
   require(b.size() == size_, "the right-hand side has another length than the matrix");
   if (x.size() != size_) x.setZero(size_);
-  if (size_ == 0) return;
+  if (is_idle()) return;
   guarded("solve", [&] { solve_system(b, x); });
-  require(x.allFinite(), "the solution is not finite; look at the boundary pressures, fluxes and "
-                         "velocities and at the scale of the conductances");
+  together([&] {
+    require(x.allFinite(), "the solution is not finite; look at the boundary pressures, fluxes and "
+                           "velocities and at the scale of the conductances");
+  });
 }
 
 }  // namespace pfv

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parallel/ranks.hpp"
 #include "solve/linear_solver.hpp"
 
 #include <exception>
+#include <functional>
 #include <new>
 
 namespace pfv {
@@ -29,12 +31,17 @@ class CheckedSolver : public LinearSolver {
 
   SolverKind kind() const { return solver_; }
   int size() const { return size_; }
+  /// Those that share the rows; null on one rank. Where there are others, this one may have no rows.
+  virtual const Ranks* ranks() const { return nullptr; }
+  /// What may throw on one of them, so that all do.
+  void together(const std::function<void()>& check) const;
   /// SolverError with the solver's name in front.
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
   void require(bool condition, const char* message) const;
   void require_finite_values(const SymmetricMatrix& matrix) const;
+  bool is_idle() const { return size_ == 0 && !ranks(); }
   template <class Phase>
   void guarded(const char* phase_name, const Phase& phase) const;
 

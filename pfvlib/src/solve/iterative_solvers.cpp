@@ -39,11 +39,11 @@ void IterativeSolver::keep_values(const SymmetricMatrix& matrix) {
 }
 
 void IterativeSolver::solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
-  if (!b.allFinite()) {
-    fail("the right-hand side is not finite; look at the boundary pressures, fluxes and "
-         "velocities");
-  }
-  if (b.isZero(0.0)) {
+  together([&] {
+    if (!b.allFinite())
+      fail("the right-hand side is not finite; look at the boundary pressures, fluxes and velocities");
+  });
+  if (largest(b) == 0.0) {
     x.setZero();
     return;
   }
@@ -63,7 +63,10 @@ void IterativeSolver::fail_after(int iterations, const Eigen::VectorXd& b,
                                  const Eigen::VectorXd& r) const {
   std::ostringstream text;
   text << "no solution after " << iterations << " iterations (the residual is "
-       << r.norm() / b.norm() << " of the right-hand side); use the solver supernodal";
+       << norm(r) / norm(b) << " of the right-hand side); "
+       << (ranks() ? "look for spheres that nearly coincide, or run on one rank with the solver supernodal"
+                   : "use the solver supernodal");
+  together([&] { fail(text.str()); });
   fail(text.str());
 }
 
@@ -89,17 +92,17 @@ void ConjugateGradient::set_out(const Eigen::VectorXd& r) {
   z_.resize(r.size());
   precondition(r, z_);
   direction_ = z_;
-  rz_ = r.dot(z_);
+  rz_ = dot(r, z_);
 }
 
 bool ConjugateGradient::advance(Eigen::VectorXd& x, Eigen::VectorXd& r) {
   product_ = multiply(matrix_, direction_);
-  const double step = rz_ / direction_.dot(product_);
+  const double step = rz_ / dot(direction_, product_);
   if (!(step > 0.0)) return false;
   x += step * direction_;
   r -= step * product_;
   precondition(r, z_);
-  const double next = r.dot(z_);
+  const double next = dot(r, z_);
   direction_ = z_ + next / rz_ * direction_;
   rz_ = next;
   return true;

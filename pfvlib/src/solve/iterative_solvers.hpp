@@ -3,6 +3,7 @@
 
 #include "solve/checked_solver.hpp"
 
+#include <cmath>
 #include <vector>
 
 namespace pfv {
@@ -22,6 +23,15 @@ class IterativeSolver : public CheckedSolver {
   void solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x) override;
   /// r = b - A x; true where it is below the tolerance of b or is rounding error of A x.
   bool is_solved(const Eigen::VectorXd& b, const Eigen::VectorXd& x, Eigen::VectorXd& r) const;
+  /// Over all ranks. Entries of r and of products are 0 but in own rows.
+  double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    return ranks() ? ranks()->sum(a.dot(b)) : a.dot(b);
+  }
+  double norm(const Eigen::VectorXd& r) const { return ranks() ? std::sqrt(dot(r, r)) : r.norm(); }
+  double largest(const Eigen::VectorXd& x) const {
+    const double here = x.size() > 0 ? x.lpNorm<Eigen::Infinity>() : 0.0;
+    return ranks() ? ranks()->largest(here) : here;
+  }
   /// SolverError unless the diagonal is positive.
   void keep_values(const SymmetricMatrix& matrix);
   [[noreturn]] void fail_at(int row) const;
@@ -37,7 +47,7 @@ class IterativeSolver : public CheckedSolver {
 class ConjugateGradient : public IterativeSolver {
  protected:
   using IterativeSolver::IterativeSolver;
-  /// z = M^-1 r, M symmetric and positive definite.
+  /// z = M^-1 r, M symmetric and positive definite; where ranks share the rows, with ghosts.
   virtual void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) const = 0;
   /// Takes up the direction of steepest descent.
   void set_out(const Eigen::VectorXd& r);

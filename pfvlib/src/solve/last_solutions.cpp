@@ -19,7 +19,8 @@ Eigen::VectorXd combination(const Eigen::MatrixXd& products, const Eigen::Vector
 
 }  // namespace
 
-void LastSolutions::forget() {
+void LastSolutions::forget(const Ranks* ranks) {
+  ranks_ = ranks;
   last_.resize(0);
   changes_.clear();
   products_.resize(0, 0);
@@ -34,15 +35,23 @@ void LastSolutions::add(Eigen::VectorXd change, const Eigen::VectorXd& product) 
   changes_.push_back(std::move(change));
   const Eigen::Index count = products_.rows() + 1;
   products_.conservativeResize(count, count);
-  for (Eigen::Index k = 0; k < count; ++k)
-    products_(k, count - 1) = products_(count - 1, k) = changes_[static_cast<std::size_t>(k)].dot(product);
+  products_.col(count - 1) = products_with(product);
+  products_.row(count - 1) = products_.col(count - 1).transpose();
+}
+
+/// Of each change, over all ranks.
+Eigen::VectorXd LastSolutions::products_with(const Eigen::VectorXd& r) const {
+  Eigen::VectorXd sums(static_cast<Eigen::Index>(changes_.size()));
+  for (Eigen::Index k = 0; k < sums.size(); ++k) sums[k] = changes_[static_cast<std::size_t>(k)].dot(r);
+  if (ranks_) ranks_->add(sums.data(), changes_.size());
+  return sums;
 }
 
 void LastSolutions::remember(const SymmetricMatrix& matrix, const Eigen::VectorXd& x) {
   if (most_ == 0) return;
   if (last_.size() != x.size()) last_.setZero(x.size());
   const Eigen::VectorXd change = x - last_, product = multiply(matrix, change);
-  const double length = std::sqrt(change.dot(product));
+  const double square = change.dot(product), length = std::sqrt(ranks_ ? ranks_->sum(square) : square);
   if (length > 0.0) add(change / length, product / length);
   last_ = x;
 }
@@ -50,9 +59,7 @@ void LastSolutions::remember(const SymmetricMatrix& matrix, const Eigen::VectorX
 void LastSolutions::begin(const SymmetricMatrix& matrix, const Eigen::VectorXd& r, Eigen::VectorXd& x) {
   remember(matrix, x);
   if (changes_.empty()) return;
-  Eigen::VectorXd sums(products_.rows());
-  for (Eigen::Index k = 0; k < sums.size(); ++k) sums[k] = changes_[static_cast<std::size_t>(k)].dot(r);
-  const Eigen::VectorXd parts = combination(products_, sums);
+  const Eigen::VectorXd parts = combination(products_, products_with(r));
   for (Eigen::Index k = 0; k < parts.size(); ++k) x += parts[k] * changes_[static_cast<std::size_t>(k)];
 }
 

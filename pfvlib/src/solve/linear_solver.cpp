@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve/linear_solver.hpp"
 
+#include "pfv/error.hpp"
 #include "solve/amg_solver.hpp"
 #include "solve/cholesky_factor.hpp"
 #include "solve/iterative_solvers.hpp"
@@ -55,6 +56,10 @@ constexpr Maker makers[] = {
 static_assert(std::size(makers) + 1 == Names<SolverKind>::all.size(), "automatic alone stands for another");
 
 }  // namespace
+
+void LinearSolver::share_rows(std::shared_ptr<const RowShare>) {
+  throw InputError("the solver " + name() + " runs on one rank; on several give amg");
+}
 
 std::unique_ptr<LinearSolver> make_solver(const Options& options, std::shared_ptr<Team> team) {
   check(options);

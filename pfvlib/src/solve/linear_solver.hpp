@@ -12,6 +12,8 @@
 
 namespace pfv {
 
+struct RowShare;
+
 /// One solver. Call order: order, factor (again after new values on the same pattern),
 /// solve as often as there are right-hand sides. No unknowns are fine: nothing is done.
 /// Same matrix and b, same bytes. Prints nothing. Every method throws SolverError, one line with
@@ -33,6 +35,10 @@ class LinearSolver {
   virtual int iterations() const { return 0; }
   /// The team that shares the work from now on. No byte depends on it.
   virtual void share_with(std::shared_ptr<Team> team) { (void)team; }
+  /// Before `order`: the rows of several ranks (solve/row_share.hpp). Matrix, b and x have own rows, ghosts and borders;
+  /// b counts in own rows and, summed over the ranks, in borders; x comes back in all. From then on every call is
+  /// collective. InputError where the solver has no such form.
+  virtual void share_rows(std::shared_ptr<const RowShare> rows);
 };
 
 /// The solver that the options name (automatic choices are resolved), with its ordering, precision and

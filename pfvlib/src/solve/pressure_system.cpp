@@ -3,6 +3,7 @@
 
 #include "network/disjoint_sets.hpp"
 #include "pfv/error.hpp"
+#include "solve/row_share.hpp"
 
 #include <algorithm>
 
@@ -106,12 +107,26 @@ std::vector<Isolated> find_isolated(const PoreNetwork& network,
   return isolated;
 }
 
+namespace {
+
+/// A flux counts once, whatever ranks have pores at its boundary.
+void leave_to_lowest_rank(std::vector<int>& fed_by, const Share& share) {
+  if (!share.ranks) return;
+  for (int& pore : fed_by) {
+    const double own = -share.ranks->own();
+    if (share.largest(pore >= 0 ? own : -share.ranks->count()) != own) pore = -1;
+  }
+}
+
+}  // namespace
+
 Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                         const Container& container) {
+                         const Container& container, const Share& share) {
   const auto conditions = conditions_of_pores(network, boundaries, container);
   Unknowns unknowns;
   unknowns.of_pore.assign(network.pores(), Unknowns::imposed);
   unknowns.of_boundary.assign(boundary_count(container), -1);
+  unknowns.fed_by.assign(boundary_count(container), -1);
   for (int pore = 0; pore < network.pores(); ++pore) {
     if (conditions[pore].pressure) {
       unknowns.imposed_pores.push_back(pore);
@@ -124,10 +139,13 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
     int& shared = unknowns.of_boundary[conditions[pore].flux_boundary];
     if (shared < 0) shared = unknowns.count++;
     unknowns.of_pore[pore] = shared;
+    int& fed = unknowns.fed_by[conditions[pore].flux_boundary];
+    if (fed < 0 && share.owns_pore(pore)) fed = pore;
   }
+  leave_to_lowest_rank(unknowns.fed_by, share);
   for (int b = 0; b < static_cast<int>(unknowns.of_boundary.size()); ++b) {
     const Boundary& boundary = boundary_of(container, b);
-    if (boundary.drives_flux() && unknowns.of_boundary[b] < 0)
+    if (boundary.drives_flux() && share.largest(unknowns.of_boundary[b]) < 0.0)
       throw InputError(boundary_name(container, b) +
                        ": its flux has no pore to enter (all its pores carry an imposed pressure, "
                        "or it has none); give the flux to another face or enlarge the patch or region");
@@ -155,7 +173,8 @@ void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundari
 }
 
 PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
-                        const Unknowns& unknowns, const Eigen::VectorXd& storage) {
+                        const Unknowns& unknowns, const Eigen::VectorXd& storage, const Share& share,
+                        const RowShare* rows) {
   PressureSystem system;
   std::vector<double> diagonal(unknowns.count, 0.0);
   Triplets off_diagonal;
@@ -165,21 +184,23 @@ PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& c
     const auto [p, q] = network.throat_pores[t];
     const int i = unknowns.of_pore[p], j = unknowns.of_pore[q];
     if (i == j) continue;  // two without unknowns, or one shared unknown
-    if (i >= 0) diagonal[i] += c;
-    if (j >= 0) diagonal[j] += c;
-    if (i >= 0 && j >= 0) {
-      off_diagonal.add(i, j, -c);
-      off_diagonal.add(j, i, -c);
-    } else {
-      system.couplings.push_back({std::max(i, j), i < 0 ? p : q, c});
-    }
+    const auto add_row = [&](int pore, int row, int other, int column) {
+      if (row < 0 || !share.owns_pore(pore)) return;
+      diagonal[row] += c;
+      if (column >= 0) off_diagonal.add(row, column, -c);
+      else system.couplings.push_back({row, other, c});
+    };
+    add_row(p, i, q, j);
+    add_row(q, j, p, i);
   }
   if (storage.size() > 0) {
     for (int pore = 0; pore < network.pores(); ++pore)
       if (unknowns.of_pore[pore] >= 0) diagonal[unknowns.of_pore[pore]] += storage[pore];
   } else {
-    system.isolated = find_isolated(network, conductances, unknowns);
+    system.isolated = rows ? find_isolated(network, conductances, unknowns, share, *rows)
+                           : find_isolated(network, conductances, unknowns);
     for (Isolated& isolated : system.isolated) {
+      if (isolated.unknown < 0) continue;  // held on another rank
       double& d = diagonal[isolated.unknown];
       isolated.pin = d > 0.0 ? d : 1.0;
       d += isolated.pin;
@@ -197,7 +218,7 @@ void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, con
     if (unknowns.of_pore[pore] >= 0)
       b[unknowns.of_pore[pore]] += sources[static_cast<Eigen::Index>(pore)];
   for (std::size_t boundary = 0; boundary < unknowns.of_boundary.size(); ++boundary)
-    if (unknowns.of_boundary[boundary] >= 0)
+    if (unknowns.fed_by[boundary] >= 0)
       b[unknowns.of_boundary[boundary]] += boundary_of(container, static_cast<int>(boundary)).value;
   for (const auto& coupling : system.couplings)
     b[coupling.unknown] += coupling.conductance * imposed[coupling.pore];

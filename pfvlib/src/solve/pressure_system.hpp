@@ -2,6 +2,7 @@
 #pragma once
 
 #include "network/pore_boundaries.hpp"
+#include "parallel/share.hpp"
 #include "pfv/container.hpp"
 #include "pfv/network.hpp"
 #include "solve/linear_solver.hpp"
@@ -16,6 +17,7 @@ struct Unknowns {
   static constexpr int imposed = -1;
   std::vector<int> of_pore;      ///< its unknown, or `imposed`
   std::vector<int> of_boundary;  ///< the unknown that the pores of a flux boundary share, or -1
+  std::vector<int> fed_by;       ///< of a boundary with such an unknown, the pore where its flux counts; -1 on other ranks
   std::vector<int> imposed_pores;  ///< those of imposed pressure
   std::vector<int> enclosed_pores;  ///< within rigid bodies: neither (solve/closed_pores.hpp)
   int count = 0;
@@ -24,7 +26,7 @@ struct Unknowns {
 /// Numbers the unknowns. A pore on several faces takes the first of: imposed pressure, imposed flux
 /// (the first face), none. Throws InputError for a flux boundary that is left without a pore.
 Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
-                         const Container& container);
+                         const Container& container, const Share& share = {});
 
 /// Sets the pressure (Pa) of each pore with an imposed one, and no other: the mean over its boundaries
 /// with a pressure.
@@ -34,7 +36,7 @@ void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundari
 /// A set of pores that no open throat joins to an imposed pressure.
 struct Isolated {
   std::vector<int> pores;
-  int unknown;  ///< the one that is held at the reference pressure
+  int unknown;  ///< the one that is held at the reference pressure; -1: one of another rank
   double pin;   ///< what holds it: added to its diagonal
 };
 
@@ -53,10 +55,14 @@ struct PressureSystem {
   std::vector<Isolated> isolated;
 };
 
+struct RowShare;
+
 /// Assembles G. `storage` (m³/Pa, one entry a pore, or empty) is V^f / (K_f dt) of a compressible
-/// fluid; it goes on the diagonal and leaves nothing isolated.
+/// fluid; it goes on the diagonal and leaves nothing isolated. On several ranks (`rows`) the rows of own unknowns; those
+/// of borders hold what own pores give.
 PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
-                        const Unknowns& unknowns, const Eigen::VectorXd& storage);
+                        const Unknowns& unknowns, const Eigen::VectorXd& storage, const Share& share = {},
+                        const RowShare* rows = nullptr);
 
 /// b = sources of each pore (m³/s) + inflow of the flux boundaries + what the imposed pressures
 /// (relative to the reference; read at their pores alone) drive.

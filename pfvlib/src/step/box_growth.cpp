@@ -26,16 +26,17 @@ double rate_beyond(const BoxGrowth& growth, const Motion& motion) {
   return rate;
 }
 
-void spread_over_pores(double rate, const Throats& throats, Eigen::VectorXd& rates) {
+void spread_over_pores(double rate, const BuiltNetwork& built, Eigen::VectorXd& rates) {
   if (rate == 0.0) return;
-  const Eigen::Map<const Eigen::VectorXd> volumes(throats.pore_volume.data(), rates.size());
-  rates += rate / volumes.sum() * volumes;
+  const Eigen::Map<const Eigen::VectorXd> volumes(built.throats.pore_volume.data(), rates.size());
+  rates += rate / built.share.sum(volumes.sum()) * volumes;
 }
 
-Matrix6Xd forces_on_growth(const BoxGrowth& growth, const Throats& throats, const Eigen::VectorXd& pressures) {
-  const Eigen::Map<const Eigen::VectorXd> volumes(throats.pore_volume.data(), pressures.size());
-  if (growth.now.isZero(0.0) || volumes.size() == 0) return Matrix6Xd::Zero(6, growth.now.cols());
-  return volumes.dot(pressures) / volumes.sum() * growth.now;
+Matrix6Xd forces_on_growth(const BoxGrowth& growth, const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
+  const Eigen::Map<const Eigen::VectorXd> volumes(built.throats.pore_volume.data(), pressures.size());
+  if (growth.now.isZero(0.0)) return Matrix6Xd::Zero(6, growth.now.cols());
+  const double volume = built.share.sum(volumes.sum()), sum = built.share.sum(volumes.dot(pressures));
+  return (volume > 0.0 ? sum / volume : 0.0) * growth.now;
 }
 
 }  // namespace pfv

@@ -23,10 +23,10 @@ BoxGrowth growth_of(const Container& container, const ContainerGeometry& present
 double rate_beyond(const BoxGrowth& growth, const Motion& motion);
 
 /// Gives each pore its part by volume of what the container grows by: all cells have grown alike.
-void spread_over_pores(double rate, const Throats& throats, Eigen::VectorXd& rates);
+void spread_over_pores(double rate, const BuiltNetwork& built, Eigen::VectorXd& rates);
 
 /// The transpose of both: load on each face of the mean pressure on its growth, so that faces feel the pressures on
 /// their present areas and the fluid does on them the work that they do on it.
-Matrix6Xd forces_on_growth(const BoxGrowth& growth, const Throats& throats, const Eigen::VectorXd& pressures);
+Matrix6Xd forces_on_growth(const BoxGrowth& growth, const BuiltNetwork& built, const Eigen::VectorXd& pressures);
 
 }  // namespace pfv

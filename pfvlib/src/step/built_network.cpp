@@ -10,6 +10,52 @@
 
 namespace pfv {
 
+namespace {
+
+/// How many of 0 ... size - 1 are, over all ranks.
+template <class Is>
+std::int64_t count_of(const BuiltNetwork& built, int size, const Is& is) {
+  std::int64_t count = 0;
+  for (int i = 0; i < size; ++i) count += is(i);
+  return static_cast<std::int64_t>(built.share.sum(static_cast<double>(count)));
+}
+
+}  // namespace
+
+std::int64_t pore_count(const BuiltNetwork& built) {
+  return count_of(built, built.network.pores(), [&](int pore) { return built.share.owns_pore(pore); });
+}
+
+std::int64_t merged_pores(const BuiltNetwork& built) {
+  const PoreNetwork& network = built.network;
+  return count_of(built, network.cells(), [&](int c) { return built.share.owns_pore(network.cell_pore[c]); }) -
+         pore_count(built);
+}
+
+std::int64_t degenerate_throats(const BuiltNetwork& built) {
+  return count_of(built, built.network.throats(), [&](int t) {
+    return built.conductances.by_rule[t] && built.share.owns_pore(built.network.throat_pores[t][0]);
+  });
+}
+
+std::int64_t hidden_spheres(const BuiltNetwork& built) {
+  const std::vector<int>& hidden = built.network.hidden;
+  return count_of(built, static_cast<int>(hidden.size()), [&](int i) { return built.share.owns_sphere(hidden[i]); });
+}
+
+Spheres own_grains(const BuiltNetwork& built) {
+  const Spheres& all = built.grains.spheres;
+  if (!built.share.ranks) return all;
+  std::vector<int> own;
+  for (int k = 0; k < all.size(); ++k)
+    if (built.share.own_spheres[k]) own.push_back(k);
+  Spheres spheres;
+  spheres.ids = Packing::Ids(all.ids(own));
+  spheres.radii = Eigen::VectorXd(all.radii(own));
+  if (all.displaced.size() > 0) spheres.displaced = Eigen::VectorXd(all.displaced(own));
+  return spheres;
+}
+
 Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built) {
   Eigen::Matrix3Xd places(3, built.unknowns.count);
   for (int p = 0; p < built.network.pores(); ++p) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "distributed/halo.hpp"
 #include "network/grains.hpp"
 #include "network/pore_boundaries.hpp"
 #include "physics/conductances.hpp"
@@ -10,11 +11,13 @@
 #include "physics/shear_forces.hpp"
 #include "physics/solid_union.hpp"
 #include "physics/throats.hpp"
+#include "parallel/share.hpp"
 #include "physics/volume_rates.hpp"
 #include "solve/closed_pores.hpp"
 #include "solve/linear_solver.hpp"
 #include "problem/container_geometry.hpp"
 #include "solve/pressure_system.hpp"
+#include "solve/row_share.hpp"
 
 #include <array>
 #include <memory>
@@ -60,7 +63,10 @@ struct KeptOperators {
 
 /// All that is derived from one packing and kept until the next triangulation.
 struct BuiltNetwork {
-  ActiveGrains grains;
+  std::optional<Halo> halo;    ///< where several ranks share it: the grains that this one knows
+  Share share;
+  std::shared_ptr<const RowShare> rows;  ///< of its unknowns; null on one rank
+  ActiveGrains grains;         ///< with ghosts
   Container container;         ///< as it was then
   ContainerGeometry geometry;  ///< of it, about the network's origin
   PoreNetwork network;
@@ -75,6 +81,20 @@ struct BuiltNetwork {
   KeptSystem kept;
   KeptOperators operators;
 };
+
+/// Whether there is a pressure to be found, here or on another rank.
+inline bool has_unknowns(const BuiltNetwork& built) {
+  return built.rows ? built.rows->total > 0 || !built.rows->borders.empty() : built.unknowns.count > 0;
+}
+
+/// Of the present network, on all ranks.
+std::int64_t pore_count(const BuiltNetwork& built);
+std::int64_t merged_pores(const BuiltNetwork& built);
+std::int64_t degenerate_throats(const BuiltNetwork& built);
+std::int64_t hidden_spheres(const BuiltNetwork& built);
+
+/// Its spheres without ghosts: ids, radii, displaced volumes.
+Spheres own_grains(const BuiltNetwork& built);
 
 /// A place (m) for each unknown: that of its pore, or of one of those that share it.
 Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built);

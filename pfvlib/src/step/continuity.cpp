@@ -10,16 +10,17 @@
 
 namespace pfv {
 
+double largest_pressure(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
+  return built.share.largest(pressures.size() > 0 ? pressures.cwiseAbs().maxCoeff() : 0.0);
+}
+
 Eigen::VectorXd continuity_defect(const BuiltNetwork& built, const Solution& solution) {
   const Unknowns& unknowns = built.unknowns;
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(built.network.pores());
   Eigen::VectorXd defect = -pore_inflows(built, solution, throat_fluxes(built, solution, none), none);
-  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b) {
-    const int unknown = unknowns.of_boundary[b];
-    if (unknown < 0) continue;
-    const auto first = std::find(unknowns.of_pore.begin(), unknowns.of_pore.end(), unknown);
-    defect[first - unknowns.of_pore.begin()] += boundary_of(solution.container, static_cast<int>(b)).value;
-  }
+  for (std::size_t b = 0; b < unknowns.fed_by.size(); ++b)
+    if (const int pore = unknowns.fed_by[b]; pore >= 0)
+      defect[pore] += boundary_of(solution.container, static_cast<int>(b)).value;
   return defect;
 }
 
@@ -32,13 +33,9 @@ Eigen::VectorXd gross_sources(const BuiltNetwork& built, const Solution& solutio
   const Unknowns& unknowns = built.unknowns;
   Eigen::VectorXd gross = Eigen::VectorXd::Zero(network.pores());
   if (solution.moving) gross = gross_rates(built, solution.motion);
-  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b) {
-    if (unknowns.of_boundary[b] < 0) continue;
-    const auto first = std::find(unknowns.of_pore.begin(), unknowns.of_pore.end(),
-                                 unknowns.of_boundary[b]);
-    gross[first - unknowns.of_pore.begin()] +=
-        std::abs(boundary_of(solution.container, static_cast<int>(b)).value);
-  }
+  for (std::size_t b = 0; b < unknowns.fed_by.size(); ++b)
+    if (const int pore = unknowns.fed_by[b]; pore >= 0)
+      gross[pore] += std::abs(boundary_of(solution.container, static_cast<int>(b)).value);
   if (!solution.container.pressure_gradient.isZero(0.0))
     for (int t = 0; t < network.throats(); ++t) {
       const double rate = std::abs(built.conductances.value[t] *
@@ -58,7 +55,7 @@ double rounding_of_pressures(const BuiltNetwork& built, const Solution& solution
   constexpr double round_off = 1e-13;  // some hundred additions a pore
   const Eigen::VectorXd uncancelled =
       homogeneous_pressures(built, gross_sources(built, solution), solves);
-  return round_off * uncancelled.cwiseAbs().maxCoeff();
+  return round_off * largest_pressure(built, uncancelled);
 }
 
 Eigen::VectorXd pore_inflows(const BuiltNetwork& built, const Solution& solution,
@@ -75,6 +72,7 @@ Eigen::VectorXd pore_inflows(const BuiltNetwork& built, const Solution& solution
     inflow[i] += fluxes[t];
     inflow[j] -= fluxes[t];
   }
+  leave_to_owners(built.share, inflow);
   return inflow;
 }
 
@@ -96,12 +94,12 @@ Eigen::VectorXd pressure_correction(const BuiltNetwork& built, const Solution& s
                                     std::int64_t& solves) {
   constexpr double of_round_off = 1e-6;
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(built.network.pores());
-  if (built.unknowns.count == 0) return none;
+  if (!has_unknowns(built)) return none;
   Eigen::VectorXd correction =
       homogeneous_pressures(built, continuity_defect(built, solution), solves);
-  const double largest = correction.cwiseAbs().maxCoeff();
+  const double largest = largest_pressure(built, correction);
   const bool rounding =
-      largest <= of_round_off * solution.relative_pressures.cwiseAbs().maxCoeff() ||
+      largest <= of_round_off * largest_pressure(built, solution.relative_pressures) ||
       largest <= rounding_of_pressures(built, solution, solves);
   return rounding ? correction : none;
 }

@@ -20,6 +20,9 @@ std::vector<double> throat_fluxes(const BuiltNetwork& built, const Solution& sol
 Eigen::VectorXd pore_inflows(const BuiltNetwork& built, const Solution& solution,
                              const std::vector<double>& fluxes, const Eigen::VectorXd& correction);
 
+/// Over all ranks, Pa.
+double largest_pressure(const BuiltNetwork& built, const Eigen::VectorXd& pressures);
+
 /// What is missing in the continuity of each pore, m³/s, summed over the pores of a flux boundary.
 Eigen::VectorXd continuity_defect(const BuiltNetwork& built, const Solution& solution);
 

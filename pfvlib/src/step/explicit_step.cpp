@@ -7,7 +7,7 @@ namespace pfv {
 
 void find_rates_of_packing(const StepTask& task, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
-  solution.moving = !at_rest(packing, problem.container, problem.options.torques);
+  solution.moving = built.share.any(!at_rest(packing, problem.container, problem.options.torques));
   refuse_undetermined(problem, solution.moving);
   set_motion(built, problem, packing, solution.motion);
   if (solution.moving)

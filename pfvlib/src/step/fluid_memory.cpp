@@ -13,8 +13,8 @@ namespace {
 /// What these pressures have pressed into the pores of a network, m³.
 double compressed_in(const BuiltNetwork& built, const Fluid& fluid,
                      const Eigen::VectorXd& pressures) {
-  if (!fluid.bulk_modulus || pressures.size() == 0) return 0.0;
-  return storage_volumes(built.throats).dot(pressures) / *fluid.bulk_modulus;
+  if (!fluid.bulk_modulus || (pressures.size() == 0 && !built.share.ranks)) return 0.0;
+  return built.share.sum(storage_volumes(built.throats).dot(pressures)) / *fluid.bulk_modulus;
 }
 
 void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
@@ -27,8 +27,7 @@ void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNet
                      "with its packing, container and settings, or set a state without pressures, from which the fluid begins at 0 Pa");
   if (!memory.restored.empty())
     memory.pressures = Eigen::Map<const Eigen::VectorXd>(memory.restored.data(), pores);
-  else if (before.network && memory.pressures.size() > 0 &&
-           memory.pressures.size() == before.network->network.pores())
+  else if (before.network && fluid.bulk_modulus && memory.pressures.size() == before.network->network.pores())
     memory.pressures = carried_pressures(*before.network, memory.pressures, now);
   else
     memory.pressures.resize(0);
@@ -42,14 +41,16 @@ void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetw
   const Fluid& fluid = problem.fluid;
   if (!account.open) {
     account = {true,
-               fluid_space(volume_of(problem.container), now.grains.spheres) +
+               space_around(now, volume_of(problem.container)) +
                    compressed_in(now, fluid, memory.pressures) - swept,
                0.0, 0.0};
     return;
   }
   if (!before.grains) return;
-  account.came_in -= displaced_by_newcomers(*before.grains, now.grains.spheres);
-  const double growth = growth_of_grains(*before.grains, now.grains.spheres);
+  const Spheres grains = own_grains(now);
+  // grains that go from one rank to another come in at the one and go at the other
+  account.came_in -= now.share.sum(displaced_by_newcomers(*before.grains, grains));
+  const double growth = now.share.sum(growth_of_grains(*before.grains, grains));
   double missing = fluid_missing(memory, now, fluid, problem.container) - swept;
   if (before.moved_by_host) {
     account.came_in += missing + growth;
@@ -59,12 +60,17 @@ void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetw
     missing = memory.volume_debt - growth;
   }
   if (!fluid.bulk_modulus) return;
-  const double volume = storage_volumes(now.throats).sum();
+  const double volume = now.share.sum(storage_volumes(now.throats).sum());
   if (volume > 0.0) memory.pressures.array() -= *fluid.bulk_modulus * missing / volume;
   memory.volume_debt = 0.0;
 }
 
 }  // namespace
+
+double space_around(const BuiltNetwork& built, double volume) {
+  if (!built.share.ranks) return fluid_space(volume, built.grains.spheres);
+  return built.share.sum(fluid_space(0.0, own_grains(built))) + volume;
+}
 
 void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
                 const Problem& problem, double swept) {
@@ -83,19 +89,19 @@ void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid
               const Solution& solution) {
   memory.time += solution.dt;
   memory.volume_debt = solution.unpaid;
-  const double grown = solution.dt * solution.rates.sum();
+  const double grown = solution.dt * built.share.sum(solution.rates.sum());
   memory.account.came_in += grown;
   memory.account.ahead = solution.stages > 1 || solution.implicit ? grown : 0.0;
   if (built.kept.compressible())
-    memory.account.came_in += solution.dt * built.kept.storage.dot(solution.pressures -
-                                                                   solution.previous_pressures);
+    memory.account.came_in += solution.dt * built.share.sum(built.kept.storage.dot(solution.pressures -
+                                                                                   solution.previous_pressures));
   if (fluid.bulk_modulus) memory.pressures = solution.pressures;
 }
 
 double fluid_missing(const FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,
                      const Container& container) {
   const FluidAccount& account = memory.account;
-  return fluid_space(volume_of(container), built.grains.spheres) + account.ahead +
+  return space_around(built, volume_of(container)) + account.ahead +
          compressed_in(built, fluid, memory.pressures) - account.at_start - account.came_in;
 }
 

@@ -27,6 +27,9 @@ struct FluidMemory {
 void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
                 const Problem& problem, double swept);
 
+/// Volume of the fluid in a box of `volume` around the grains of all ranks, m³.
+double space_around(const BuiltNetwork& built, double volume);
+
 /// What the faces have swept in a step that has just ended, m³.
 double swept_volume(const Container& container, double step);
 

@@ -74,6 +74,22 @@ void find_sphere_pressures(const BuiltNetwork& built, const Problem& problem,
 
 }  // namespace
 
+namespace {
+
+/// Those of faces are summed over all ranks; ghosts have theirs from their owners.
+void join_loads(const BuiltNetwork& built, Loads& loads) {
+  const Share& share = built.share;
+  if (!share.ranks) return;
+  const Eigen::Index spheres = built.grains.spheres.size();
+  for (Eigen::Index i = 0; i < spheres; ++i)
+    if (!share.own_spheres[i]) loads.col(i).setZero();
+  Eigen::VectorXd of_faces = loads.rightCols(loads.cols() - spheres).reshaped();
+  share.add(of_faces);
+  loads.rightCols(loads.cols() - spheres) = of_faces.reshaped(6, loads.cols() - spheres);
+}
+
+}  // namespace
+
 void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& packing,
                  WorkRecord& work, Solution& solution, Forces& forces) {
   const PhaseClock clock(work.seconds.forces);
@@ -84,6 +100,7 @@ void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& pac
   multiply(*built.operators.force_matrix, solution.relative_pressures, *problem.team, loads);
   if (!problem.container.pressure_gradient.isZero(0.0)) loads += gradient_loads(built, problem);
   if (solution.moving) add_open_water_forces(built, solution.motion, loads);
+  join_loads(built, loads);
   spread(loads.topRows<3>(), columns, packing.size(), forces.total);
   if (options.torques) spread(loads.bottomRows<3>(), columns, packing.size(), forces.torque);
   if (options.split_forces) split(built, problem, solution, forces);
@@ -101,7 +118,8 @@ std::vector<FaceResult> face_forces(const BuiltNetwork& built, const Solution& s
     if (contacts[c].face != PoreBoundaries::inside)
       pushes.col(contacts[c].face) += solution.relative_pressures[contacts[c].pore] *
                                       built.bases.load(static_cast<int>(c)).head<3>();
-  const Matrix6Xd on_growth = forces_on_growth(solution.growth, built.throats, solution.relative_pressures);
+  const Matrix6Xd on_growth = forces_on_growth(solution.growth, built, solution.relative_pressures);
+  if (built.share.ranks) built.share.ranks->add(pushes.data(), static_cast<std::size_t>(pushes.size()));
   std::vector<FaceResult> faces(count);
   for (int f = 0; f < count; ++f) {
     faces[f].name = solution.container.faces[f].name;

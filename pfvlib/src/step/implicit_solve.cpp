@@ -111,7 +111,7 @@ Loads ImplicitSolve::follow(const StepTask& task, const ForcedMotion& forced, do
   for (const auto& [mover, component] : system.velocities) gained(component, mover) += factor_->unknowns[row++];
   solution.motion += forced.bodies ? forced.bodies->spread(gained) : gained;
   rates_of(built, solution.motion, *problem.team, solution.rates);
-  spread_over_pores(growth, built.throats, solution.rates);
+  spread_over_pores(growth, built, solution.rates);
   // K has no R of faces: for it they go on as they did
   Motion for_grains = solution.motion;
   const int moving_faces = problem.container.face_count();

@@ -14,12 +14,13 @@ namespace {
 double mean_strain(const BuiltNetwork& built, const Solution& solution,
                    const Eigen::VectorXd& changes) {
   return mean_pore_strain(built.network, built.conductances, solution.relative_pressures,
-                          solution.container.pressure_gradient, changes, built.strain_volume);
+                          solution.container.pressure_gradient, changes, built.strain_volume, built.share);
 }
 
 }  // namespace
 
 void PoreStrain::begin(StrainMeasure measure, int pores, double taken_over) {
+  measure_ = measure;
   value_ = taken_over_ = taken_over;
   volume_changes_.setZero(measure == StrainMeasure::mean ? pores : 0);
 }
@@ -27,19 +28,20 @@ void PoreStrain::begin(StrainMeasure measure, int pores, double taken_over) {
 void PoreStrain::add(const BuiltNetwork& built, const Solution& solution) {
   const Eigen::VectorXd& rates = solution.rates;
   const double step = solution.dt;
-  if (rates.size() == 0) return;
-  if (volume_changes_.size() > 0) {
+  if (rates.size() == 0 && !built.share.ranks) return;
+  if (measure_ == StrainMeasure::mean) {
     volume_changes_ += step * rates;
     value_ = taken_over_ + mean_strain(built, solution, volume_changes_);
     return;
   }
   const Eigen::Map<const Eigen::ArrayXd> volumes(built.strain_volume.data(), rates.size());
-  value_ += (rates.array().abs() / volumes).maxCoeff() * step;
+  const double largest = rates.size() > 0 ? (rates.array().abs() / volumes).maxCoeff() : 0.0;
+  value_ += built.share.largest(largest) * step;
 }
 
 double PoreStrain::since(const PoreStrain& then, const BuiltNetwork& built,
                          const Solution& last) const {
-  if (then.volume_changes_.size() > 0)
+  if (then.measure_ == StrainMeasure::mean)
     return mean_strain(built, last, volume_changes_ - then.volume_changes_);
   return value_ - then.value_;
 }
@@ -83,7 +85,7 @@ void NetworkKeeper::rebuild_now(const Packing& packing, const Problem& problem,
   next_.reset();
   stale_ = true;
   std::unique_ptr<LinearSolver> solver = built_ ? std::move(built_->kept.solver) : nullptr;
-  if (built_) former_grains_ = built_->grains.spheres;
+  if (built_) former_grains_ = own_grains(*built_);
   if (!wanted.keep_former) built_.reset();  // its memory is the new one's
   auto fresh = derive_network(packing, problem, work);
   fresh->kept.former_solver = std::move(solver);
@@ -100,7 +102,7 @@ void NetworkKeeper::take_up_next(const Problem& problem, const Solution& last, W
   work.wall_seconds.waited += wall_seconds() - start;
   const double strain = strain_.since(next_->begun_at, *built_, last);
   next_.reset();
-  former_grains_ = built_->grains.spheres;
+  former_grains_ = own_grains(*built_);
   take_up(std::move(fresh), problem, strain, work, taken_up);
 }
 
@@ -111,8 +113,8 @@ void NetworkKeeper::take_up(std::unique_ptr<BuiltNetwork> fresh, const Problem& 
   built_ = std::move(fresh);
   const int pores = built_->network.pores();
   strain_.begin(problem.options.strain_measure, pores, strain);
-  work.counts.degenerate_throats = built_->conductances.degenerate;
-  work.counts.merged_pores = built_->network.cells() - pores;
+  work.counts.degenerate_throats = degenerate_throats(*built_);
+  work.counts.merged_pores = merged_pores(*built_);
   work.counts.enclosed_pores = built_->closed.enclosed;
   work.counts.joined_pores = built_->closed.joined;
   if (had_network_) ++rebuilds_;
@@ -120,12 +122,19 @@ void NetworkKeeper::take_up(std::unique_ptr<BuiltNetwork> fresh, const Problem& 
   taken_up(std::move(replaced));
 }
 
-/// Whether the grains or the boundaries are others than those of the network, whatever the strain.
-bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) const {
+/// Whether the grains or the boundaries are others than those of the network, whatever the strain. Where several ranks
+/// share it, all come to one answer, and the ghosts are brought up to date.
+bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) {
   if (stale_ || !built_) return true;
+  const bool others = !holds_the_same(built_->grains, packing) ||
+                      !same_grains(packing, problem.container, ids_, built_->grains.columns);
+  if (built_->share.any(others)) return true;
+  if (built_->halo) built_->halo->refresh(packing);
+  return built_->share.any(has_moved_far(built_->halo ? built_->halo->seen() : packing, problem));
+}
+
+bool NetworkKeeper::has_moved_far(const Packing& packing, const Problem& problem) const {
   const ActiveGrains& grains = built_->grains;
-  if (!holds_the_same(grains, packing)) return true;
-  if (!same_grains(packing, problem.container, ids_, grains.columns)) return true;
   const double strain = problem.options.retriangulation_strain;
   for (Eigen::Index i = 0; i < grains.spheres.radii.size(); ++i) {
     const int k = grains.columns[i];

@@ -28,6 +28,7 @@ class PoreStrain {
   double since(const PoreStrain& then, const BuiltNetwork& built, const Solution& last) const;
 
  private:
+  StrainMeasure measure_ = StrainMeasure::largest;
   double value_ = 0.0, taken_over_ = 0.0;
   Eigen::VectorXd volume_changes_;  ///< of the pores, m³; no entries unless the mean strain is wanted
 };
@@ -80,7 +81,8 @@ class NetworkKeeper {
     PoreStrain begun_at;  ///< the strain when it was begun
   };
 
-  bool is_outdated(const Packing& packing, const Problem& problem) const;
+  bool is_outdated(const Packing& packing, const Problem& problem);
+  bool has_moved_far(const Packing& packing, const Problem& problem) const;
   void rebuild_now(const Packing& packing, const Problem& problem, const Wanted& wanted,
                    WorkRecord& work, const TakenUp& taken_up);
   void take_up_next(const Problem& problem, const Solution& last, WorkRecord& work,

@@ -7,6 +7,18 @@
 
 namespace pfv {
 
+namespace {
+
+/// A face has a load from every pore that it shares a facet with: each counts at its owner.
+void leave_faces_to_owners(BuiltNetwork& built) {
+  if (!built.share.ranks) return;
+  ForceMatrix& matrix = *built.operators.force_matrix;
+  for (int i = matrix.row_begin[matrix.spheres]; i < matrix.row_begin[matrix.rows()]; ++i)
+    if (!built.share.own_pores[matrix.pore[i]]) matrix.value.col(i).setZero();
+}
+
+}  // namespace
+
 void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& counts) {
   const std::vector<ContainerFace>& faces = problem.container.faces;
   const bool turning = std::any_of(faces.begin(), faces.end(), [](const ContainerFace& face) {
@@ -21,6 +33,7 @@ void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& coun
       force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
                    built.grains.spheres.size(), {true, true, problem.options.torques, turning},
                    *problem.team);
+  leave_faces_to_owners(built);
   if (stretching) {
     add_stretching(*built.operators.force_matrix, built.network, built.grains.spheres, built.vertices,
                    built.throats, built.operators.viscous_shares);
@@ -57,10 +70,16 @@ void find_open_water(BuiltNetwork& built, const Problem& problem) {
   built.operators.open_water =
       open_water_drags(built.network, built.grains.spheres, built.vertices, built.throats, built.conductances,
                        *built.operators.force_matrix, imposed, problem.container, problem.fluid.viscosity, of_shear,
-                       built.grains.body, built.operators.still_water);
+                       built.grains.body, built.operators.still_water, built.share);
 }
 
 }  // namespace
+
+std::int64_t open_water_count(const BuiltNetwork& built) {
+  const auto& drags = built.operators.open_water;
+  const auto own = drags ? std::count_if(drags->begin(), drags->end(), [](const auto& drag) { return drag.is_own; }) : 0;
+  return static_cast<std::int64_t>(built.share.sum(static_cast<double>(own)));
+}
 
 void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& counts) {
   make_force_matrix(built, problem, counts);
@@ -74,7 +93,7 @@ void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& co
   }
   if (!built.operators.open_water || built.operators.still_water != is_still(problem.container)) {
     find_open_water(built, problem);
-    counts.open_water = static_cast<std::int64_t>(built.operators.open_water->size());
+    counts.open_water = open_water_count(built);
   }
   if (problem.options.sphere_pressure && !built.operators.surface_pressure)
     built.operators.surface_pressure =
@@ -150,13 +169,16 @@ void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen
   else
     reciprocal_rates(*built.operators.force_matrix, *built.operators.sum_order, built.bases, motion, team, rates);
   for (const int pore : built.unknowns.enclosed_pores) rates[pore] = 0.0;
+  leave_to_owners(built.share, rates);
 }
 
 Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion) {
   const int pores = built.network.pores();
   if (built.operators.geometric_rates) return gross_rates(*built.operators.geometric_rates, motion);
   if (!built.operators.force_matrix) return Eigen::VectorXd::Zero(pores);
-  return gross_rates(*built.operators.force_matrix, built.bases, motion, pores);
+  Eigen::VectorXd rates = gross_rates(*built.operators.force_matrix, built.bases, motion, pores);
+  leave_to_owners(built.share, rates);
+  return rates;
 }
 
 Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, const Eigen::VectorXd& sources,
@@ -170,7 +192,7 @@ Eigen::VectorXd homogeneous_pressures(const BuiltNetwork& built, LinearSolver& s
   const auto& unknown = built.unknowns.of_pore;
   for (std::size_t p = 0; p < unknown.size(); ++p)
     if (unknown[p] >= 0) b[unknown[p]] += sources[static_cast<Eigen::Index>(p)];
-  if (built.unknowns.count > 0) {
+  if (has_unknowns(built)) {
     solver.solve(b, x);
     ++solves;
   }

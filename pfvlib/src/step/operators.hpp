@@ -18,6 +18,9 @@ void make_volume_rates(BuiltNetwork& built, const Problem& problem, Counts& coun
 /// S and what the options want of the forces beside.
 void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& counts);
 
+/// Spheres that are braked as in open water, on all ranks.
+std::int64_t open_water_count(const BuiltNetwork& built);
+
 /// S p with the pressures on the faces, N and N m.
 Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures);
 /// What a macroscopic gradient adds to it; kept for that gradient.

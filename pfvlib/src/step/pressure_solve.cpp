@@ -55,18 +55,38 @@ void find_rates(BuiltNetwork& built, const Problem& problem, const Motion& motio
   make_volume_rates(built, problem, work.counts);
   ++work.counts.volume_rate;
   rates_of(built, motion, *problem.team, solution.rates);
-  spread_over_pores(rate_beyond(solution.growth, motion) + solution.debt_rate, built.throats,
-                    solution.rates);
+  spread_over_pores(rate_beyond(solution.growth, motion) + solution.debt_rate, built, solution.rates);
 }
+
+namespace {
+
+/// Summed as differences: where all are equal, the mean is exact.
+double mean_imposed(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
+  const Share& share = built.share;
+  double first = 0.0, sum = 0.0, count = 0.0;
+  for (const int pore : built.unknowns.imposed_pores)
+    if (share.owns_pore(pore)) {
+      if (count == 0.0) first = pressures[pore];
+      ++count;
+    }
+  if (share.ranks) {  // of the lowest rank that has one
+    const double rank = -share.ranks->own();
+    const bool is_first = share.largest(count > 0.0 ? rank : -share.ranks->count()) == rank;
+    first = share.sum(is_first ? first : 0.0);
+  }
+  for (const int pore : built.unknowns.imposed_pores)
+    if (share.owns_pore(pore)) sum += pressures[pore] - first;
+  count = share.sum(count);
+  return count > 0.0 ? first + share.sum(sum) / count : 0.0;
+}
+
+}  // namespace
 
 void impose(const BuiltNetwork& built, Solution& solution) {
   const auto& pores = built.unknowns.imposed_pores;
   Eigen::VectorXd& relative = solution.relative_pressures;
   impose_pressures(built.network, built.boundaries, solution.container, solution.time, relative);
-  const double first = pores.empty() ? 0.0 : relative[pores.front()];
-  double sum = 0.0;  // of the differences: where all are equal, the reference is exact
-  for (const int pore : pores) sum += relative[pore] - first;
-  solution.reference = pores.empty() ? 0.0 : first + sum / static_cast<double>(pores.size());
+  solution.reference = mean_imposed(built, relative);
   for (const int pore : pores) relative[pore] -= solution.reference;
   for (const int pore : built.unknowns.enclosed_pores) relative[pore] = 0.0;
 }
@@ -100,7 +120,7 @@ void take_unknown_pressures(const BuiltNetwork& built, const LinearSolver& solve
     if (unknown[p] >= 0)
       solution.relative_pressures[static_cast<Eigen::Index>(p)] = solution.unknown_pressures[unknown[p]];
   solution.pressures = solution.relative_pressures.array() + solution.reference;
-  if (!solution.pressures.allFinite())
+  if (built.share.any(!solution.pressures.allFinite()))
     throw SolverError(solver.name() +
                       " returned pressures that are not finite; the conductances span too many "
                       "orders of magnitude or the imposed values are too large");
@@ -110,7 +130,7 @@ void solve_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& 
                      WorkRecord& work, Solution& solution) {
   const PhaseClock clock(work.seconds.solve);
   find_right_side(built, solution);
-  if (built.unknowns.count > 0) {
+  if (has_unknowns(built)) {
     solver.solve(solution.right_side, solution.unknown_pressures);
     ++work.counts.solve;
   }
@@ -125,7 +145,7 @@ void refine_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver&
   // A dense packing of 40 000 spheres loses 1.5e-10: that is not worth a second solve at each step.
   constexpr double lost = 1e-9, exact = 1e-10, hopeless = 1e-6;
   constexpr int sweeps = 4;
-  if (built.unknowns.count == 0 || is_iterative(problem.options.solver) ||
+  if (!has_unknowns(built) || is_iterative(problem.options.solver) ||
       problem.options.precision == Precision::mixed || !loses_digits.value_or(true))
     return;
   std::int64_t& solves = work.counts.correction_solve;
@@ -152,7 +172,7 @@ void refine_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver&
 
 Loads pressure_loads(const BuiltNetwork& built, const Solution& solution) {
   Loads sum = loads_of(built, solution.relative_pressures);
-  const Matrix6Xd growth = forces_on_growth(solution.growth, built.throats, solution.relative_pressures);
+  const Matrix6Xd growth = forces_on_growth(solution.growth, built, solution.relative_pressures);
   sum.rightCols(growth.cols()) += growth;
   return sum;
 }

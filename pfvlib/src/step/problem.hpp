@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parallel/ranks.hpp"
 #include "parallel/team.hpp"
 #include "pfv/container.hpp"
 #include "pfv/fluid.hpp"
@@ -16,6 +17,7 @@ struct Problem {
   const Fluid& fluid;
   const Options& options;
   const std::shared_ptr<Team>& team;
+  std::shared_ptr<const Ranks> ranks = nullptr;  ///< that share the packing; null: one has it
 
   bool lifts() const { return options.buoyancy && !fluid.gravity.isZero(0.0); }
 };

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace pfv {
@@ -82,22 +83,29 @@ Eigen::Matrix3Xd openings_in(const BuiltNetwork& built) {
 
 void refuse_open_pores(const BuiltNetwork& built) {
   constexpr double round_off = 1e-9;
+  const Share& share = built.share;
   const auto& walls = built.vertices.walls;
-  if (built.network.pores() == 0 ||
+  if ((!share.ranks && built.network.pores() == 0) ||
       std::all_of(walls.begin(), walls.end(), [](const WallSurface& wall) { return wall.is_plane(); }))
     return;
   const Eigen::VectorXd open = openings_in(built).colwise().norm();
   const std::vector<double>& areas = built.geometry.areas;
-  int pore = 0;
-  const double worst = open.maxCoeff(&pore) / *std::max_element(areas.begin(), areas.end());
+  int pore = -1;
+  for (int p = 0; p < open.size(); ++p)
+    if (share.owns_pore(p) && (pore < 0 || open[p] > open[pore])) pore = p;
+  const double here = pore < 0 ? 0.0 : open[pore] / *std::max_element(areas.begin(), areas.end());
   double volume = 0.0;
   for (const double own : built.throats.pore_volume) volume += own;
-  if (worst <= round_off && std::abs(volume / built.geometry.volume - 1.0) <= round_off) return;
-  const std::vector<int> spheres = spheres_around(built, {pore});
-  throw InputError("the spheres are too few, or too unlike, for a cylinder: pores reach around its axis (near " +
-                       place_of(built, pore) + ", between " + sphere_list(built.grains.spheres.ids, spheres) +
-                       "); take planes around it in the place of the cylinder (for a mesh of the fix: `container flats`), or more spheres",
-                   culprits_of(built, spheres, {pore}));
+  const double worst = share.largest(here);
+  if (worst <= round_off && std::abs(share.sum(volume) / built.geometry.volume - 1.0) <= round_off) return;
+  share.together([&] {
+    if (pore < 0 || here < worst) return;
+    const std::vector<int> spheres = spheres_around(built, {pore});
+    throw InputError("the spheres are too few, or too unlike, for a cylinder: pores reach around its axis (near " +
+                         place_of(built, pore) + ", between " + sphere_list(built.grains.spheres.ids, spheres) +
+                         "); take planes around it in the place of the cylinder (for a mesh of the fix: `container flats`), or more spheres",
+                     culprits_of(built, spheres, {pore}));
+  });
 }
 
 namespace {
@@ -119,7 +127,7 @@ bool fluxes_balance(const Container& container) {
 }  // namespace
 
 void refuse_undetermined(const Problem& problem, bool moving) {
-  const auto& [container, fluid, options, team] = problem;
+  const auto& [container, fluid, options, team, ranks] = problem;
   // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
   if (fluid.bulk_modulus || container.any_periodic() || any_boundary(container, &Boundary::imposes_pressure))
     return;
@@ -175,7 +183,8 @@ namespace {
 double rounding_of_rates(const BuiltNetwork& built, const Solution& solution) {
   constexpr double round_off = 1e-13;
   if (!solution.moving) return 0.0;
-  const double of_sums = round_off * gross_rates(built, solution.motion).maxCoeff();
+  const Eigen::VectorXd gross = gross_rates(built, solution.motion);
+  const double of_sums = round_off * built.share.largest(gross.size() > 0 ? gross.maxCoeff() : 0.0);
   if (!(solution.dt > 0.0) || !stretches(solution.container)) return of_sums;
   return of_sums + round_off * solution.geometry.volume / solution.dt;
 }
@@ -191,40 +200,48 @@ Forced forced_out(const BuiltNetwork& built, const Solution& solution, const Iso
     forced.net -= solution.rates[pore];
     forced.gross += std::abs(solution.rates[pore]);
   }
-  for (std::size_t b = 0; b < built.unknowns.of_boundary.size(); ++b) {
-    const int shared = built.unknowns.of_boundary[b];
-    const bool fed = shared >= 0 && std::any_of(isolated.pores.begin(), isolated.pores.end(),
-                                                [&](int pore) {
-                                                  return built.unknowns.of_pore[pore] == shared;
-                                                });
-    if (!fed) continue;
+  for (std::size_t b = 0; b < built.unknowns.fed_by.size(); ++b) {
+    const int fed = built.unknowns.fed_by[b];
+    if (fed < 0 || std::find(isolated.pores.begin(), isolated.pores.end(), fed) == isolated.pores.end()) continue;
     const double flux = boundary_of(solution.container, static_cast<int>(b)).value;
     forced.net += flux;
     forced.gross += std::abs(flux);
   }
+  forced.net = built.share.sum(forced.net);
+  forced.gross = built.share.sum(forced.gross);
   return forced;
+}
+
+InputError cut_off(const BuiltNetwork& built, const Isolated& isolated, double pores, double net) {
+  std::ostringstream text;
+  const std::vector<int> spheres = spheres_around(built, isolated.pores);
+  text << pores << " pore(s) ";
+  text << "near " << place_of(built, isolated.pores.front()) << " between "
+       << sphere_list(built.grains.spheres.ids, spheres) << " are cut off from every pressure, but " << net
+       << " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk modulus, or reduce the "
+          "overlaps";
+  return InputError(text.str(), culprits_of(built, spheres, isolated.pores));
 }
 
 }  // namespace
 
 void refuse_isolated(const BuiltNetwork& built, const Solution& solution,
                      const std::vector<Isolated>& held) {
+  if (held.empty()) return;
+  const Share& share = built.share;
+  // rates are sums of area times velocity: their own round-off is no change of volume
+  const double noise =
+      1e-12 * share.largest(solution.rates.size() > 0 ? solution.rates.cwiseAbs().maxCoeff() : 0.0);
+  std::optional<double> rounding;  // seldom needed
   for (const Isolated& isolated : held) {
     const auto [net, gross] = forced_out(built, solution, isolated);
-    // rates are sums of area times velocity: their own round-off is no change of volume
-    const double noise = 1e-12 * solution.rates.cwiseAbs().maxCoeff();
-    if (std::abs(net) <= 1e-10 * gross + noise || std::abs(net) <= rounding_of_rates(built, solution)) continue;
-    std::ostringstream rate;
-    rate << net;
-    const std::vector<int> spheres = spheres_around(built, isolated.pores);
-    throw InputError(
-        std::to_string(isolated.pores.size()) + " pore(s) near " +
-            place_of(built, isolated.pores.front()) + " between " +
-            sphere_list(built.grains.spheres.ids, spheres) +
-            " are cut off from every pressure, but " + rate.str() +
-            " m3/s (imposed flux less change of volume) must leave them; give the fluid a bulk "
-            "modulus, or reduce the overlaps",
-        culprits_of(built, spheres, isolated.pores));
+    if (std::abs(net) <= 1e-10 * gross + noise) continue;
+    if (!rounding) rounding = rounding_of_rates(built, solution);
+    if (std::abs(net) <= *rounding) continue;
+    const double pores = share.sum(static_cast<double>(isolated.pores.size()));
+    share.together([&] {
+      if (!isolated.pores.empty()) throw cut_off(built, isolated, pores, net);
+    });
   }
 }
 

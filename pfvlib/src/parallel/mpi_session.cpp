@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/mpi_session.hpp"
+#include "parallel/mpi_session.hpp"
 
 #include <mpi.h>
 

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "launch.hpp"
+
+#include "distributed/packing_parts.hpp"
+#include "parallel/mpi_session.hpp"
+#include "pfv/mpi.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+namespace pfv::app {
+namespace {
+
+/// What Open MPI, MPICH and those like it, and PMIx launchers tell their programs.
+bool is_launched() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
+    if (std::getenv(name)) return true;
+  return false;
+}
+
+std::shared_ptr<const Ranks> start() {
+  if (!is_launched()) return nullptr;
+  MpiSession::start();
+  return ranks_of(MPI_COMM_WORLD);
+}
+
+}  // namespace
+
+std::shared_ptr<const Ranks> launched_ranks() {
+  static const std::shared_ptr<const Ranks> ranks = start();
+  return ranks;
+}
+
+bool speaks(const Ranks* ranks) { return !ranks || ranks->own() == 0; }
+
+void end_others(const Ranks* ranks, int status) {
+  if (ranks && !ranks->failed_together()) MPI_Abort(MPI_COMM_WORLD, status);
+}
+
+DealtPacking::DealtPacking(PackingArrays rows, const Ranks* ranks) : rows_(std::move(rows)) {
+  if (ranks) parts_ = std::make_unique<PackingParts>(rows_.view(), *ranks);
+}
+
+DealtPacking::~DealtPacking() = default;
+
+Packing DealtPacking::own() const { return parts_ ? parts_->own().view() : rows_.view(); }
+
+Forces DealtPacking::forces_of_rows(const Forces& forces) const {
+  if (!parts_) return forces;
+  Forces rows;
+  rows.total = parts_->returned(forces.total);
+  rows.pressure = parts_->returned(forces.pressure);
+  rows.viscous = parts_->returned(forces.viscous);
+  return rows;
+}
+
+PackingArrays own_rows(PackingArrays all, const Ranks* ranks) {
+  if (!ranks) return all;
+  const Eigen::Index count = all.ids.size(), first = count * ranks->own() / ranks->count();
+  const Eigen::Index size = count * (ranks->own() + 1) / ranks->count() - first;
+  const auto columns = [&](const Eigen::Matrix3Xd& values) {
+    return values.cols() > 0 ? Eigen::Matrix3Xd(values.middleCols(first, size)) : Eigen::Matrix3Xd(3, 0);
+  };
+  return {Packing::Ids(all.ids.segment(first, size)),
+          columns(all.positions),
+          Eigen::VectorXd(all.radii.segment(first, size)),
+          columns(all.velocities),
+          columns(all.angular_velocities),
+          all.displaced_volumes.size() > 0 ? Eigen::VectorXd(all.displaced_volumes.segment(first, size)) : Eigen::VectorXd(),
+          all.bodies.size() > 0 ? Eigen::VectorXi(all.bodies.segment(first, size)) : Eigen::VectorXi()};
+}
+
+}  // namespace pfv::app

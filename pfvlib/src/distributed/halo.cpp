@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "distributed/halo.hpp"
+
+#include "distributed/grain_bins.hpp"
+#include "geometry/pi.hpp"
+#include "pfv/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+namespace pfv {
+
+namespace {
+
+/// What a grain is on its way to another rank: id, position, radius, velocity, angular velocity.
+constexpr std::size_t record_size = 11;
+/// Width of the first halo in mean distances of the grains: in dense packings few cells reach further.
+constexpr double first_width = 4.0;
+constexpr std::size_t most_answers = 4;
+
+std::vector<Bounds> bounds_in(const std::vector<Ranks::Bytes>& messages) {
+  std::vector<Bounds> bounds;
+  for (const Ranks::Bytes& bytes : messages) {
+    const std::vector<double> values = values_in<double>(bytes);
+    bounds.push_back({Eigen::Map<const Eigen::Vector3d>(values.data()), Eigen::Map<const Eigen::Vector3d>(values.data() + 3)});
+  }
+  return bounds;
+}
+
+Ranks::Bytes bytes_of(const Bounds& bounds) {
+  Ranks::Bytes bytes;
+  append(bytes, bounds.lower.data(), 3);
+  append(bytes, bounds.upper.data(), 3);
+  return bytes;
+}
+
+double id_as_double(std::int64_t id) {
+  double value;
+  std::memcpy(&value, &id, sizeof value);
+  return value;
+}
+
+std::int64_t id_of(double value) {
+  std::int64_t id;
+  std::memcpy(&id, &value, sizeof id);
+  return id;
+}
+
+}  // namespace
+
+Halo::Halo(const Packing& own, const Container& container, OutsideGrains outside, const Ranks& ranks)
+    : ranks_(&ranks), own_count_(own.size()), origin_(container.lower), lent_(ranks.count()), borrowed_(ranks.count()) {
+  ranks.together([&] { check_own(own, container, outside); });
+  refuse_shared_ids(own);
+  Eigen::Vector3d sums(static_cast<double>(own.size()), static_cast<double>(active_.size()), 0.0);
+  double largest = 0.0;
+  for (const int k : active_) {
+    sums[2] += own.radii[k];
+    largest = std::max(largest, own.radii[k]);
+  }
+  ranks.add(sums.data(), 3);
+  totals_ = {sums[0], sums[1], sums[1] > 0.0 ? sums[2] / sums[1] : 0.0, ranks.largest(largest)};
+  if (totals_.spheres == 0.0 && outside == OutsideGrains::refuse)
+    ranks.together([] { throw InputError("the packing has no spheres; give at least one"); });
+  take_own(own);
+  share_places(container);
+}
+
+void Halo::check_own(const Packing& own, const Container& container, OutsideGrains outside) {
+  if (container.any_periodic())
+    throw InputError("a periodic box on several ranks is not supported: run it on one rank");
+  if (own.bodies.size() > 0 && (own.bodies.array() >= 0).any())
+    throw InputError("rigid bodies on several ranks are not supported: run them on one rank");
+  active_ = select_grains(own, container, own.size() == 0 ? OutsideGrains::leave_out : outside).columns;
+}
+
+/// Ids decide in which order all is numbered and who owns what. Each is sent to one rank, which sees all of its kind.
+void Halo::refuse_shared_ids(const Packing& own) const {
+  const int count = ranks_->count();
+  std::vector<Ranks::Bytes> to(count);
+  for (Eigen::Index k = 0; k < own.size(); ++k) {
+    const std::int64_t id = own.ids[k];
+    append(to[static_cast<std::uint64_t>(id) % static_cast<std::uint64_t>(count)], &id, 1);
+  }
+  std::vector<std::int64_t> seen;
+  for (const Ranks::Bytes& bytes : ranks_->hand_over(to))
+    for (const std::int64_t id : values_in<std::int64_t>(bytes)) seen.push_back(id);
+  ranks_->together([&] {
+    std::sort(seen.begin(), seen.end());
+    const auto twice = std::adjacent_find(seen.begin(), seen.end());
+    if (twice != seen.end())
+      throw InputError("sphere id " + std::to_string(*twice) + " occurs twice; ids must be unique", {{*twice}, {}});
+  });
+}
+
+void Halo::take_own(const Packing& own) {
+  // all have what any has, so that ghosts bring theirs
+  Eigen::Vector3d has(own.velocities.cols() > 0, own.angular_velocities.cols() > 0, own.displaced_volumes.size() > 0);
+  ranks_->take_largest(has.data(), 3);
+  have_velocities_ = has[0] > 0.0;
+  have_spins_ = has[1] > 0.0;
+  const Eigen::Index n = own.size();
+  const auto columns = [&](bool wanted, const auto& values) {
+    return values.cols() > 0 ? Eigen::Matrix3Xd(values) : Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, wanted ? n : 0));
+  };
+  seen_.ids = own.ids;
+  seen_.positions = own.positions;
+  seen_.radii = own.radii;
+  seen_.velocities = columns(have_velocities_, own.velocities);
+  seen_.angular_velocities = columns(have_spins_, own.angular_velocities);
+  seen_.displaced_volumes.resize(has[2] > 0.0 ? n : 0);
+  for (Eigen::Index k = 0; k < seen_.displaced_volumes.size(); ++k)
+    seen_.displaced_volumes[k] = displaced_volume(own, k);
+  owner_.assign(static_cast<std::size_t>(n), ranks_->own());
+}
+
+void Halo::share_places(const Container& container) {
+  Bounds place;
+  if (!active_.empty()) {
+    const Eigen::Matrix3Xd inside = seen_.positions(Eigen::all, active_);
+    place = {inside.rowwise().minCoeff() - origin_, inside.rowwise().maxCoeff() - origin_};
+  }
+  places_ = bounds_in(ranks_->gather(bytes_of(place)));
+  const double width = first_width * std::cbrt(volume_of(container) / std::max(1.0, totals_.active));
+  const Eigen::Vector3d edges = container.upper - container.lower;
+  constexpr double everywhere = std::numeric_limits<double>::infinity();
+  known_ = place;
+  for (int axis = 0; axis < 3 && !place.is_empty(); ++axis) {
+    known_.lower[axis] = place.lower[axis] > width ? place.lower[axis] - width : -everywhere;
+    known_.upper[axis] = place.upper[axis] < edges[axis] - width ? place.upper[axis] + width : everywhere;
+  }
+  const std::vector<Bounds> wanted = bounds_in(ranks_->gather(bytes_of(known_)));
+  Lists columns(ranks_->count());
+  for (int r = 0; r < ranks_->count(); ++r)
+    if (r != ranks_->own() && !wanted[r].is_empty())
+      for (const int k : active_)
+        if (wanted[r].contains(seen_.positions.col(k) - origin_)) columns[r].push_back(k);
+  lend(columns);
+}
+
+/// Tells others of own grains, and takes in what they tell.
+void Halo::lend(const Lists& columns) {
+  std::vector<Ranks::Bytes> to(ranks_->count());
+  std::vector<double> record(record_size, 0.0);
+  for (int r = 0; r < ranks_->count(); ++r)
+    for (const int k : columns[r]) {
+      record[0] = id_as_double(seen_.ids[k]);
+      record[4] = seen_.radii[k];
+      for (int i = 0; i < 3; ++i) {
+        record[1 + i] = seen_.positions(i, k);
+        if (seen_.velocities.cols() > 0) record[5 + i] = seen_.velocities(i, k);
+        if (seen_.angular_velocities.cols() > 0) record[8 + i] = seen_.angular_velocities(i, k);
+      }
+      append(to[r], record.data(), record_size);
+      lent_[r].push_back(k);
+    }
+  const std::vector<Ranks::Bytes> from = ranks_->hand_over(to);
+  for (int r = 0; r < ranks_->count(); ++r)
+    if (r != ranks_->own() && !from[r].empty()) append_ghosts(r, values_in<double>(from[r]));
+}
+
+void Halo::append_ghosts(int rank, const std::vector<double>& records) {
+  const auto more = static_cast<Eigen::Index>(records.size() / record_size);
+  const Eigen::Index before = seen_.ids.size(), n = before + more;
+  const Eigen::Map<const Eigen::MatrixXd> values(records.data(), record_size, more);
+  seen_.ids.conservativeResize(n);
+  seen_.positions.conservativeResize(3, n);
+  seen_.radii.conservativeResize(n);
+  seen_.positions.rightCols(more) = values.middleRows<3>(1);
+  seen_.radii.tail(more) = values.row(4);
+  if (have_velocities_) {
+    seen_.velocities.conservativeResize(3, n);
+    seen_.velocities.rightCols(more) = values.middleRows<3>(5);
+  }
+  if (have_spins_) {
+    seen_.angular_velocities.conservativeResize(3, n);
+    seen_.angular_velocities.rightCols(more) = values.middleRows<3>(8);
+  }
+  if (seen_.displaced_volumes.size() > 0) seen_.displaced_volumes.conservativeResize(n);
+  for (Eigen::Index k = 0; k < more; ++k) {
+    const Eigen::Index column = before + k;
+    seen_.ids[column] = id_of(values(0, k));
+    if (seen_.displaced_volumes.size() > 0) seen_.displaced_volumes[column] = 4.0 / 3.0 * pi * std::pow(seen_.radii[column], 3);
+    owner_.push_back(rank);
+    borrowed_[rank].push_back(static_cast<int>(column));
+  }
+}
+
+ActiveGrains Halo::active_grains(const Container& container) const {
+  ActiveGrains grains = select_grains(seen_.view(), container, OutsideGrains::leave_out);
+  grains.spheres.mean_radius = totals_.mean_radius;
+  return grains;
+}
+
+std::vector<int> Halo::answers(const std::vector<Query>& queries, int asker) const {
+  std::vector<char> told(static_cast<std::size_t>(own_count_), 0);
+  for (const int k : lent_[asker]) told[k] = 1;
+  const Bounds& place = places_[ranks_->own()];
+  Eigen::Matrix3Xd relative = seen_.positions.leftCols(own_count_).colwise() - origin_;
+  const GrainBins bins(relative, active_, place);
+  std::vector<int> columns;
+  std::vector<std::pair<double, int>> found;
+  for (const Query& query : queries) {
+    found.clear();
+    const double most = query.power + 1e-12 * std::abs(query.power);
+    const double reach = std::sqrt(std::max(0.0, most + totals_.largest_radius * totals_.largest_radius));
+    bins.near(query.centre, reach, [&](int k) {
+      const double power = (relative.col(k) - query.centre).squaredNorm() - seen_.radii[k] * seen_.radii[k];
+      if (!told[k] && power < most) found.push_back({power, k});
+    });
+    std::sort(found.begin(), found.end());
+    for (std::size_t i = 0; i < std::min(most_answers, found.size()); ++i) {
+      told[found[i].second] = 1;
+      columns.push_back(found[i].second);
+    }
+  }
+  return columns;
+}
+
+bool Halo::ask(const std::vector<Query>& queries) {
+  const int count = ranks_->count();
+  std::vector<Ranks::Bytes> to(count);
+  for (const Query& query : queries) {
+    const double reach = std::sqrt(std::max(0.0, query.power) + totals_.largest_radius * totals_.largest_radius);
+    for (int r = 0; r < count; ++r)
+      if (r != ranks_->own() && places_[r].meets_ball(query.centre, reach)) append(to[r], &query, 1);
+  }
+  const std::vector<Ranks::Bytes> from = ranks_->hand_over(to);
+  Lists columns(count);
+  for (int r = 0; r < count; ++r)
+    if (!from[r].empty()) columns[r] = answers(values_in<Query>(from[r]), r);
+  const std::size_t before = owner_.size();
+  lend(columns);
+  return ranks_->any(owner_.size() > before);
+}
+
+void Halo::keep(const std::vector<char>& wanted) {
+  const int count = ranks_->count();
+  std::vector<Ranks::Bytes> to(count);
+  std::vector<int> columns(static_cast<std::size_t>(own_count_));
+  std::iota(columns.begin(), columns.end(), 0);
+  Lists borrowed(count);
+  for (int r = 0; r < count; ++r)
+    for (const int column : borrowed_[r]) {
+      const char kept = wanted[column];
+      append(to[r], &kept, 1);
+      if (!kept) continue;
+      borrowed[r].push_back(static_cast<int>(columns.size()));
+      columns.push_back(column);
+    }
+  borrowed_ = std::move(borrowed);
+  const auto of = [&](const Eigen::Matrix3Xd& values) {
+    return values.cols() > 0 ? Eigen::Matrix3Xd(values(Eigen::all, columns)) : Eigen::Matrix3Xd(3, 0);
+  };
+  seen_ = {Packing::Ids(seen_.ids(columns)), of(seen_.positions), Eigen::VectorXd(seen_.radii(columns)), of(seen_.velocities),
+           of(seen_.angular_velocities),
+           seen_.displaced_volumes.size() > 0 ? Eigen::VectorXd(seen_.displaced_volumes(columns)) : Eigen::VectorXd(), {}};
+  std::vector<int> owner;
+  for (const int column : columns) owner.push_back(owner_[column]);
+  owner_ = std::move(owner);
+  const std::vector<Ranks::Bytes> from = ranks_->hand_over(to);
+  for (int r = 0; r < count; ++r) {
+    std::vector<int> kept;
+    for (std::size_t i = 0; i < from[r].size(); ++i)
+      if (from[r][i]) kept.push_back(lent_[r][i]);
+    lent_[r] = std::move(kept);
+  }
+}
+
+Exchange Halo::exchange() const { return {lent_, borrowed_}; }
+
+void Halo::refresh(const Packing& own) {
+  const Eigen::Index n = seen_.ids.size();
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(10, n);
+  values.topLeftCorner(3, own_count_) = own.positions;
+  values.row(3).head(own_count_) = own.radii;
+  if (own.velocities.cols() > 0) values.block(4, 0, 3, own_count_) = own.velocities;
+  if (own.angular_velocities.cols() > 0) values.block(7, 0, 3, own_count_) = own.angular_velocities;
+  exchange().refresh(*ranks_, values);
+  Eigen::Vector2d has(own.velocities.cols() > 0, own.angular_velocities.cols() > 0);
+  ranks_->take_largest(has.data(), 2);
+  seen_.positions = values.topRows<3>();
+  seen_.radii = values.row(3);
+  seen_.velocities = values.middleRows(4, 3).leftCols(has[0] > 0.0 ? n : 0);
+  seen_.angular_velocities = values.middleRows(7, 3).leftCols(has[1] > 0.0 ? n : 0);
+  for (Eigen::Index k = 0; k < seen_.displaced_volumes.size(); ++k)
+    if (k < own_count_) seen_.displaced_volumes[k] = displaced_volume(own, k);
+}
+
+}  // namespace pfv

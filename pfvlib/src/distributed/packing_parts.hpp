@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "parallel/ranks.hpp"
+#include "pfv/packing.hpp"
+
+#include <vector>
+
+namespace pfv {
+
+/// Spheres that several ranks have in any order, dealt out by place: each rank gets those in a box of its own, about
+/// as many as the others (recursive bisection across the longest edge of what is to be divided).
+class PackingParts {
+ public:
+  /// `rows`: what this rank has at first. Throws InputError for positions that are not finite. Collective.
+  PackingParts(const Packing& rows, const Ranks& ranks);
+  /// What it has in the end.
+  const PackingArrays& own() const { return own_; }
+  /// Values of the own spheres, one column each, back to where their rows came from. Collective.
+  Eigen::Matrix3Xd returned(const Eigen::Matrix3Xd& values) const;
+
+ private:
+  void deal(const Packing& rows);
+
+  const Ranks* ranks_;
+  std::vector<std::vector<int>> sent_;  ///< to each rank: rows
+  std::vector<int> received_;           ///< from each rank: how many, in its order
+  PackingArrays own_;
+  Eigen::Index rows_ = 0;
+};
+
+/// The rank of each place by that bisection. Collective.
+std::vector<int> ranks_by_place(const Eigen::Ref<const Eigen::Matrix3Xd>& places, const Ranks& ranks);
+
+}  // namespace pfv

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "distributed/halo.hpp"
+#include "parallel/share.hpp"
+#include "pfv/network.hpp"
+
+#include <vector>
+
+namespace pfv {
+
+/// A pore belongs to the owner of the sphere of lowest id of its first cell. Fills in whose the pores are and who tells
+/// whom of what. `whole_cells`: cells whose pores have all their throats. Throws SolverError where the ranks have not
+/// found the same pores. Collective.
+void find_owners(const PoreNetwork& network, const ActiveGrains& grains, const Halo& halo,
+                 const std::vector<char>& whole_cells, Share& share);
+
+}  // namespace pfv

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/row_share.hpp"
+
+#include "network/disjoint_sets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pfv {
+
+namespace {
+
+void number_own(const Unknowns& unknowns, const Share& share, RowShare& rows) {
+  rows.own.assign(unknowns.count, 0);
+  rows.number.assign(unknowns.count, -1);
+  for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore)
+    if (unknowns.of_pore[pore] >= 0 && share.own_pores[pore]) rows.own[unknowns.of_pore[pore]] = 1;
+  for (const int border : rows.borders)
+    if (border >= 0) rows.own[border] = 0;
+  rows.count = std::count(rows.own.begin(), rows.own.end(), 1);
+  const std::vector<Ranks::Bytes> counts = [&] {
+    Ranks::Bytes bytes;
+    append(bytes, &rows.count, 1);
+    return share.ranks->gather(bytes);
+  }();
+  for (int r = 0; r < share.ranks->count(); ++r) {
+    const std::int64_t count = values_in<std::int64_t>(counts[r]).front();
+    if (r < share.ranks->own()) rows.first += count;
+    rows.total += count;
+  }
+  std::int64_t next = rows.first;
+  for (int u = 0; u < unknowns.count; ++u)
+    if (rows.own[u]) rows.number[u] = next++;
+}
+
+}  // namespace
+
+std::shared_ptr<const RowShare> share_rows(const Unknowns& unknowns, const Share& share) {
+  auto rows = std::make_shared<RowShare>();
+  rows->ranks = share.ranks;
+  std::vector<char> is_border(unknowns.count, 0);
+  Eigen::VectorXd exists = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns.of_boundary.size()));
+  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b)
+    exists[static_cast<Eigen::Index>(b)] = unknowns.of_boundary[b] >= 0;
+  share.ranks->take_largest(exists.data(), static_cast<std::size_t>(exists.size()));
+  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b) {
+    if (exists[static_cast<Eigen::Index>(b)] == 0.0) continue;
+    rows->borders.push_back(unknowns.of_boundary[b]);
+    if (unknowns.of_boundary[b] >= 0) is_border[unknowns.of_boundary[b]] = 1;
+  }
+  number_own(unknowns, share, *rows);
+  const auto unknowns_of = [&](const std::vector<std::vector<int>>& pores) {
+    std::vector<std::vector<int>> lists(pores.size());
+    for (std::size_t r = 0; r < pores.size(); ++r)
+      for (const int pore : pores[r])
+        if (const int u = unknowns.of_pore[pore]; u >= 0 && !is_border[u]) lists[r].push_back(u);
+    return lists;
+  };
+  rows->exchange = {unknowns_of(share.pores.sent), unknowns_of(share.pores.received)};
+  Eigen::VectorXd numbers(unknowns.count);  // exact up to 2^53
+  for (int u = 0; u < unknowns.count; ++u) numbers[u] = static_cast<double>(rows->number[u]);
+  rows->exchange.refresh(*share.ranks, numbers);
+  for (int u = 0; u < unknowns.count; ++u) rows->number[u] = static_cast<std::int64_t>(numbers[u]);
+  return rows;
+}
+
+void spread_largest(const RowShare& rows, DisjointSets& sets, Eigen::VectorXd& values) {
+  const int size = static_cast<int>(values.size());
+  Eigen::VectorXd at_borders(static_cast<Eigen::Index>(rows.borders.size()));
+  for (bool changed = true; changed;) {
+    const Eigen::VectorXd before = values;
+    for (int u = 0; u < size; ++u) values[sets.find(u)] = std::max(values[sets.find(u)], values[u]);
+    for (int u = 0; u < size; ++u) values[u] = values[sets.find(u)];
+    rows.exchange.refresh(*rows.ranks, values);
+    for (std::size_t b = 0; b < rows.borders.size(); ++b)
+      at_borders[static_cast<Eigen::Index>(b)] =
+          rows.borders[b] >= 0 ? values[rows.borders[b]] : -std::numeric_limits<double>::infinity();
+    rows.ranks->take_largest(at_borders.data(), rows.borders.size());
+    for (std::size_t b = 0; b < rows.borders.size(); ++b)
+      if (rows.borders[b] >= 0) values[rows.borders[b]] = at_borders[static_cast<Eigen::Index>(b)];
+    changed = rows.ranks->any(before != values);
+  }
+}
+
+std::vector<Isolated> find_isolated(const PoreNetwork& network, const std::vector<double>& conductances,
+                                    const Unknowns& unknowns, const Share& share, const RowShare& rows) {
+  DisjointSets sets(unknowns.count);
+  Eigen::VectorXd anchored = Eigen::VectorXd::Zero(unknowns.count);
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [p, q] = network.throat_pores[t];
+    if (conductances[t] <= 0.0 || !(share.own_pores[p] || share.own_pores[q])) continue;
+    const int i = unknowns.of_pore[p], j = unknowns.of_pore[q];
+    if (i >= 0 && j >= 0) sets.join(i, j);
+    if ((i < 0) != (j < 0)) anchored[std::max(i, j)] = 1.0;
+  }
+  spread_largest(rows, sets, anchored);
+  // a set is known by the least number in it
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  Eigen::VectorXd label = Eigen::VectorXd::Constant(unknowns.count, none);
+  for (int u = 0; u < unknowns.count; ++u)
+    if (rows.own[u]) label[u] = -static_cast<double>(rows.number[u]);
+  spread_largest(rows, sets, label);
+  const auto is_isolated = [&](std::size_t pore) {
+    const int u = unknowns.of_pore[pore];
+    return u >= 0 && share.own_pores[pore] && anchored[u] == 0.0 && label[u] != none;
+  };
+  Ranks::Bytes bytes;
+  for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore)
+    if (is_isolated(pore)) append(bytes, &label[unknowns.of_pore[pore]], 1);
+  std::vector<double> labels;
+  for (const Ranks::Bytes& part : rows.ranks->gather(bytes))
+    for (const double value : values_in<double>(part)) labels.push_back(value);
+  std::sort(labels.begin(), labels.end());
+  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  std::vector<Isolated> isolated(labels.size(), Isolated{{}, -1, 0.0});
+  for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore) {
+    if (!is_isolated(pore)) continue;
+    const int u = unknowns.of_pore[pore];
+    Isolated& set = isolated[std::lower_bound(labels.begin(), labels.end(), label[u]) - labels.begin()];
+    set.pores.push_back(static_cast<int>(pore));
+    if (rows.own[u] && static_cast<double>(rows.number[u]) == -label[u]) set.unknown = u;
+  }
+  return isolated;
+}
+
+double relative_residual(const SymmetricMatrix& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& b,
+                         const RowShare& rows) {
+  const Eigen::VectorXd r = b - multiply(matrix, x);
+  double squares[2] = {0.0, 0.0};
+  for (int u = 0; u < matrix.size(); ++u) {
+    if (!rows.own[u]) continue;
+    squares[0] += r[u] * r[u];
+    squares[1] += b[u] * b[u];
+  }
+  rows.ranks->add(squares, 2);
+  return squares[1] > 0.0 ? std::sqrt(squares[0] / squares[1]) : 0.0;
+}
+
+}  // namespace pfv

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "distributed/packing_parts.hpp"
+#include "parallel/ranks.hpp"
+#include "pfv/packing.hpp"
+#include "support/packings.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+/// The ranks that the tests run on.
+std::shared_ptr<const pfv::Ranks> world();
+
+/// How a packing that every rank has is dealt out.
+enum class Deal { by_place, at_random, all_to_one };
+
+/// Columns of this rank.
+inline std::vector<int> own_columns(const pfv::PackingArrays& packing, Deal deal) {
+  const pfv::Ranks& ranks = *world();
+  std::vector<int> columns;
+  std::vector<int> rank_of(static_cast<std::size_t>(packing.ids.size()), 0);
+  if (deal == Deal::by_place) rank_of = pfv::ranks_by_place(packing.positions, ranks);
+  support::Random random(7);
+  if (deal == Deal::at_random)
+    for (int& rank : rank_of) rank = std::min(ranks.count() - 1, static_cast<int>(random(0.0, ranks.count())));
+  if (deal == Deal::all_to_one)
+    for (int& rank : rank_of) rank = ranks.count() - 1;
+  for (std::size_t k = 0; k < rank_of.size(); ++k)
+    if (rank_of[k] == ranks.own()) columns.push_back(static_cast<int>(k));
+  return columns;
+}
+
+inline pfv::PackingArrays part_of(const pfv::PackingArrays& packing, const std::vector<int>& columns) {
+  const auto of = [&](const Eigen::Matrix3Xd& values) {
+    return values.cols() > 0 ? Eigen::Matrix3Xd(values(Eigen::all, columns)) : Eigen::Matrix3Xd(3, 0);
+  };
+  return {pfv::Packing::Ids(packing.ids(columns)), of(packing.positions), Eigen::VectorXd(packing.radii(columns)),
+          of(packing.velocities), of(packing.angular_velocities), {}, {}};
+}
+
+/// Velocities and spins drawn at random, m/s and rad/s.
+inline void set_in_motion(pfv::PackingArrays& packing, std::uint64_t seed) {
+  support::Random random(seed);
+  packing.velocities.resize(3, packing.ids.size());
+  packing.angular_velocities.resize(3, packing.ids.size());
+  for (Eigen::Index k = 0; k < packing.ids.size(); ++k) {
+    packing.velocities.col(k) = random.in_cube();
+    packing.angular_velocities.col(k) = random.in_cube();
+  }
+}
