@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace pfv {
@@ -177,11 +178,13 @@ namespace {
 /// Place and volume of the largest pore of all ranks.
 void find_largest(const BuiltNetwork& built, double sphere, EmptySpace& empty) {
   const std::vector<double>& volumes = built.throats.pore_fluid_volume;
-  const auto found = std::max_element(volumes.begin(), volumes.end());
-  const double here = found == volumes.end() ? 0.0 : *found, largest = built.share.largest(here);
+  int found = -1;
+  for (int pore = 0; pore < built.network.pores(); ++pore)
+    if (built.share.owns_pore(pore) && (found < 0 || volumes[pore] > volumes[found])) found = pore;
+  const double here = found < 0 ? -std::numeric_limits<double>::infinity() : volumes[found];
+  const double largest = built.share.largest(here);
   Eigen::VectorXd place = Eigen::VectorXd::Zero(4);  // and how many have one as large
-  if (found != volumes.end() && here == largest)
-    place << built.network.pore_centres.col(found - volumes.begin()) + built.network.origin, 1.0;
+  if (found >= 0 && here == largest) place << built.network.pore_centres.col(found) + built.network.origin, 1.0;
   built.share.add(place);
   empty.largest = largest / sphere;
   if (place[3] > 0.0) empty.place = place.head<3>() / place[3];

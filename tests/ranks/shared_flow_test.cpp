@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What several ranks find together is what one rank finds.
+#include "world.hpp"
+
+#include "pfv/dense_packing.hpp"
+#include "pfv/flow.hpp"
+#include "pfv/error.hpp"
+#include "support/containers.hpp"
+
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <string>
+
+namespace {
+
+/// rms and largest difference of the forces on this rank's grains from those of one rank, over the rms of all.
+struct Difference {
+  double rms = 0.0, worst = 0.0;
+};
+
+Difference difference_of(const Eigen::Matrix3Xd& part, const Eigen::Matrix3Xd& whole, const std::vector<int>& columns) {
+  const pfv::Ranks& ranks = *world();
+  Eigen::Matrix3Xd expected = whole(Eigen::all, columns);
+  const double scale = std::sqrt(whole.squaredNorm() / static_cast<double>(whole.cols()));
+  const Eigen::Matrix3Xd d = part - expected;
+  const double sum = ranks.sum(d.squaredNorm());
+  const double worst = ranks.largest(d.cols() > 0 ? d.colwise().norm().maxCoeff() : 0.0);
+  return {std::sqrt(sum / static_cast<double>(whole.cols())) / scale, worst / scale};
+}
+
+pfv::Options tight() {
+  pfv::Options options;
+  options.solver = pfv::SolverKind::amg;
+  options.tolerance = 1e-11;
+  options.torques = true;
+  options.sphere_pressure = true;
+  return options;
+}
+
+struct Case {
+  pfv::PackingArrays packing;
+  pfv::Container container;
+  pfv::Fluid fluid = {};
+  pfv::Options options = tight();
+  double dt = 0.0;
+  Deal deal = Deal::by_place;
+};
+
+void expect_near(double a, double b, double relative, double scale, const char* what) {
+  EXPECT_NEAR(a, b, relative * std::max(std::abs(b), scale)) << what;
+}
+
+void expect_reports_agree(const pfv::Report& found, const pfv::Report& expected) {
+  EXPECT_EQ(found.spheres, expected.spheres);
+  EXPECT_EQ(found.hidden, expected.hidden);
+  EXPECT_EQ(found.outside, expected.outside);
+  EXPECT_EQ(found.pores, expected.pores);
+  EXPECT_EQ(found.unknowns, expected.unknowns);
+  EXPECT_EQ(found.counts.merged_pores, expected.counts.merged_pores);
+  EXPECT_EQ(found.counts.pinned_pores, expected.counts.pinned_pores);
+  EXPECT_EQ(found.counts.open_water, expected.counts.open_water);
+  EXPECT_EQ(found.counts.degenerate_throats, expected.counts.degenerate_throats);
+  const double flow = std::max({expected.inflow, expected.outflow, 1e-6});  // what cancels leaves round-off
+  expect_near(found.porosity, expected.porosity, 1e-12, 0.0, "porosity");
+  expect_near(found.solid_area, expected.solid_area, 1e-12, 0.0, "solid area");
+  expect_near(found.inflow, expected.inflow, 1e-9, flow, "inflow");
+  expect_near(found.outflow, expected.outflow, 1e-9, flow, "outflow");
+  expect_near(found.volume_rate_sum, expected.volume_rate_sum, 1e-9, flow, "volume rates");
+  expect_near(found.storage_rate, expected.storage_rate, 1e-8, flow, "storage");
+  EXPECT_EQ(found.permeability.has_value(), expected.permeability.has_value());
+  if (found.permeability && expected.permeability) {
+    expect_near(*found.permeability, *expected.permeability, 1e-9, 0.0, "permeability");
+    expect_near(*found.permeability_error, *expected.permeability_error, 1e-9, 0.0, "its error");
+    EXPECT_EQ(found.outside_range, expected.outside_range);
+  }
+  expect_near(*found.fluid_volume, *expected.fluid_volume, 1e-12, 0.0, "fluid");
+  EXPECT_LT(std::abs(found.mass_error), 1e-9);
+  EXPECT_LT(found.force_balance_error, 1e-12);
+  ASSERT_EQ(found.faces.size(), expected.faces.size());
+  double force = 1e-30;
+  for (const pfv::FaceResult& face : expected.faces) force = std::max(force, face.force_pressure.norm());
+  for (std::size_t f = 0; f < found.faces.size(); ++f) {
+    expect_near(found.faces[f].flux, expected.faces[f].flux, 1e-9, flow, "flux");
+    EXPECT_LT((found.faces[f].force_pressure - expected.faces[f].force_pressure).norm(), 1e-9 * force);
+    EXPECT_LT((found.faces[f].force_viscous - expected.faces[f].force_viscous).norm(), 1e-9 * force);
+  }
+  ASSERT_EQ(found.openings.size(), expected.openings.size());
+  for (std::size_t i = 0; i < found.openings.size(); ++i) {
+    EXPECT_EQ(found.openings[i].pores, expected.openings[i].pores);
+    expect_near(found.openings[i].flux, expected.openings[i].flux, 1e-9, flow, "flux of an opening");
+  }
+}
+
+void expect_as_on_one_rank(const Case& what) {
+  const std::vector<int> columns = own_columns(what.packing, what.deal);
+  const pfv::PackingArrays part = part_of(what.packing, columns);
+  pfv::Flow one(what.container, what.fluid, what.options), all(what.container, what.fluid, what.options, world());
+  const pfv::Forces& expected = one.evaluate(what.packing.view(), what.dt);
+  const pfv::Forces& found = all.evaluate(part.view(), what.dt);
+  const Difference forces = difference_of(found.total, expected.total, columns);
+  EXPECT_LT(forces.rms, 1e-9);
+  EXPECT_LT(forces.worst, 1e-7);
+  if (what.options.torques) EXPECT_LT(difference_of(found.torque, expected.torque, columns).rms, 1e-9);
+  const double pressure = expected.sphere_pressure.cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    EXPECT_NEAR(found.sphere_pressure[static_cast<Eigen::Index>(i)], expected.sphere_pressure[columns[i]], 1e-9 * pressure);
+  EXPECT_NEAR(all.mean_pressure(), one.mean_pressure(), 1e-9 * pressure);
+  EXPECT_NEAR(all.empty_space().part, one.empty_space().part, 1e-9);
+  EXPECT_NEAR(all.empty_space().largest, one.empty_space().largest, 1e-9 * std::abs(one.empty_space().largest));
+  expect_reports_agree(all.report(), one.report());
+}
+
+pfv::Box seepage() {
+  pfv::Box box;
+  box[pfv::Face::zlo].boundary = pfv::Boundary::pressure(2.0);
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(-1.0);
+  return box;
+}
+
+pfv::PackingArrays moving(pfv::PackingArrays packing) {
+  set_in_motion(packing, 4);
+  return packing;
+}
+
+}  // namespace
+
+TEST(SharedFlow, SeepageThroughABedAtRest) {
+  for (const Deal deal : {Deal::by_place, Deal::at_random, Deal::all_to_one})
+    expect_as_on_one_rank({pfv::dense_packing(400), seepage(), {}, tight(), 0.0, deal});
+}
+
+TEST(SharedFlow, GrainsThatMoveAndFacesThatDo) {
+  pfv::Box box;
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  box[pfv::Face::xlo].velocity = 0.3;
+  box[pfv::Face::zhi].velocity = -0.2;
+  expect_as_on_one_rank({moving(pfv::dense_packing(400)), box});
+}
+
+TEST(SharedFlow, FluxesAndPatchesAndAWell) {
+  pfv::Box box;
+  box[pfv::Face::zlo].boundary = pfv::Boundary::flux(1e-3);
+  box[pfv::Face::xhi].boundary = pfv::Boundary::flux(-3e-4);
+  box.patches.push_back({pfv::Face::zhi, {0.3, 0.7, 0.2, 0.6}, pfv::Boundary::pressure(0.5)});
+  box.patches.push_back({pfv::Face::ylo, {0.5, 0.5001, 0.5, 0.5001}, pfv::Boundary::pressure(0.1)});
+  box.regions.push_back({{0.4, 0.4, 0.4}, {0.4001, 0.4001, 0.4001}, pfv::Boundary::flux(2e-4)});
+  expect_as_on_one_rank({moving(pfv::dense_packing(400)), box});
+}
+
+TEST(SharedFlow, ACompressibleFluidBetweenSealedWalls) {
+  pfv::Fluid fluid;
+  fluid.bulk_modulus = 1e3;
+  pfv::Box box;
+  box[pfv::Face::zhi].velocity = -1e-3;
+  expect_as_on_one_rank({moving(pfv::dense_packing(300)), box, fluid, tight(), 1e-3});
+}
+
+TEST(SharedFlow, GrainsThatSettleInOpenWater) {
+  pfv::Box box;
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  pfv::Fluid fluid;
+  fluid.gravity = {0.0, 0.0, -9.81};
+  for (const int grains : {1, 3, 60}) expect_as_on_one_rank({moving(support::random_packing(grains, 0.02, 0.04, 3)), box, fluid});
+}
+
+TEST(SharedFlow, OverlapsThatCutPoresOff) {
+  const pfv::PackingArrays lattice = support::lattice(support::Lattice::fcc, 3, 1.17);
+  pfv::Flow one(seepage(), {}, tight());
+  one.evaluate(lattice.view());
+  ASSERT_GT(one.report().counts.pinned_pores, 0);
+  expect_as_on_one_rank({lattice, seepage()});
+}
+
+TEST(SharedFlow, ContainersOfPlanesAndACylinder) {
+  support::Random random(5);
+  pfv::Container cylinder = support::cylinder({0.0, 0.0, 1.0}, {0.5, 0.5, 0.0}, 0.4, 1.0);
+  pfv::Container prism = support::prism(7, 0.4, 1.0);
+  pfv::Options options = tight();
+  options.torques = false;
+  for (pfv::Container* container : {&cylinder, &prism}) {
+    const int last = container->face_count() - 1;
+    container->faces[last].boundary = pfv::Boundary::pressure(1.0);
+    container->faces[last - 1].boundary = pfv::Boundary::pressure(0.0);
+    expect_as_on_one_rank({support::spheres_in(*container, 300, 0.06, random), *container, {}, options});
+  }
+}
+
+TEST(SharedFlow, StepsWithNewNetworksAsOnOneRank) {
+  pfv::PackingArrays packing = moving(pfv::dense_packing(300));
+  packing.velocities *= 0.05;
+  pfv::Box box;
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  const std::vector<int> columns = own_columns(packing, Deal::by_place);
+  pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
+  const double dt = 2e-3;
+  for (int step = 0; step < 12; ++step) {
+    const pfv::PackingArrays part = part_of(packing, columns);
+    const pfv::Forces& expected = one.step(packing.view(), dt);
+    const pfv::Forces& found = all.step(part.view(), dt);
+    EXPECT_LT(difference_of(found.total, expected.total, columns).rms, 1e-9) << "step " << step;
+    EXPECT_EQ(all.retriangulations(), one.retriangulations());
+    EXPECT_NEAR(all.strain(), one.strain(), 1e-12);
+    packing.positions += dt * packing.velocities;
+  }
+  EXPECT_GE(one.retriangulations(), 2);
+  EXPECT_NEAR(*all.report().fluid_balance_error, *one.report().fluid_balance_error, 1e-9);
+}
+
+TEST(SharedFlow, TheSameBytesTwice) {
+  const pfv::PackingArrays packing = moving(pfv::dense_packing(300));
+  const pfv::PackingArrays part = part_of(packing, own_columns(packing, Deal::by_place));
+  const auto forces = [&] {
+    pfv::Flow flow(seepage(), {}, tight(), world());
+    return Eigen::Matrix3Xd(flow.evaluate(part.view()).total);
+  };
+  EXPECT_EQ(forces(), forces());
+}
+
+TEST(SharedFlow, AnErrorOnOneRankIsThatOfAll) {
+  pfv::PackingArrays packing = pfv::dense_packing(200);
+  const auto refusal = [&](const pfv::PackingArrays& of) {
+    const pfv::PackingArrays part = part_of(of, own_columns(of, Deal::by_place));
+    pfv::Flow flow(seepage(), {}, tight(), world());
+    try {
+      flow.evaluate(part.view());
+    } catch (const pfv::InputError& error) {
+      EXPECT_TRUE(world()->failed_together());
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  pfv::PackingArrays bad = packing;
+  bad.radii[17] = -1.0;
+  EXPECT_NE(refusal(bad).find("sphere 18"), std::string::npos);
+  bad = packing;
+  bad.ids[150] = bad.ids[3];
+  EXPECT_NE(refusal(bad).find("id 4 occurs twice"), std::string::npos);
+  bad = packing;
+  bad.positions(0, 9) = 1.5;
+  EXPECT_NE(refusal(bad).find("sphere 10"), std::string::npos);
+  EXPECT_EQ(refusal(packing), "");
+}
+
+TEST(SharedFlow, WhatRanksCannotDoTogetherIsRefused) {
+  pfv::Options options = tight();
+  options.solver = pfv::SolverKind::supernodal;
+  options.tolerance.reset();
+  EXPECT_THROW(pfv::Flow(seepage(), {}, options, world()), pfv::InputError);
+  options = tight();
+  options.shear_viscous = true;
+  EXPECT_THROW(pfv::Flow(seepage(), {}, options, world()), pfv::InputError);
+}
