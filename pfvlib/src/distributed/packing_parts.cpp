@@ -5,6 +5,8 @@
 #include "pfv/error.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -122,46 +124,71 @@ PackingParts::PackingParts(const Packing& rows, const Ranks& ranks)
   deal(rows);
 }
 
-void PackingParts::deal(const Packing& rows) {
-  const int count = ranks_->count();
+namespace {
+
+constexpr std::size_t record = 12;  // id, position, radius, velocity, spin, displaced volume
+
+/// Which of the optional arrays any rank has.
+struct Has {
+  bool velocities, spins, displaced;
+};
+
+Has has_any(const Packing& rows, const Ranks& ranks) {
   Eigen::Vector3d has(rows.velocities.cols() > 0, rows.angular_velocities.cols() > 0, rows.displaced_volumes.size() > 0);
-  ranks_->take_largest(has.data(), 3);
-  std::vector<Ranks::Bytes> to(count);
-  for (int r = 0; r < count; ++r)
-    for (const int k : sent_[r]) {
-      append(to[r], rows.ids.data() + k, 1);
-      append(to[r], rows.positions.col(k).data(), 3);
-      append(to[r], rows.radii.data() + k, 1);
-      const Eigen::Vector3d v = rows.velocities.cols() > 0 ? Eigen::Vector3d(rows.velocities.col(k)) : Eigen::Vector3d::Zero();
-      const Eigen::Vector3d w =
-          rows.angular_velocities.cols() > 0 ? Eigen::Vector3d(rows.angular_velocities.col(k)) : Eigen::Vector3d::Zero();
-      const double displaced = displaced_volume(rows, k);
-      append(to[r], v.data(), 3);
-      append(to[r], w.data(), 3);
-      append(to[r], &displaced, 1);
-    }
-  constexpr std::size_t record = 12;  // id and eleven numbers
+  ranks.take_largest(has.data(), 3);
+  return {has[0] > 0.0, has[1] > 0.0, has[2] > 0.0};
+}
+
+void append_sphere(Ranks::Bytes& bytes, const Packing& rows, int k) {
+  std::array<double, record> values{};
+  std::memcpy(values.data(), rows.ids.data() + k, sizeof(double));
+  const auto put = [&](std::size_t place, const auto& columns) {
+    for (int i = 0; i < 3 && columns.cols() > 0; ++i) values[place + static_cast<std::size_t>(i)] = columns(i, k);
+  };
+  put(1, rows.positions);
+  values[4] = rows.radii[k];
+  put(5, rows.velocities);
+  put(8, rows.angular_velocities);
+  values[11] = displaced_volume(rows, k);
+  append(bytes, values.data(), record);
+}
+
+/// `values`: records one after the other, from column `first` on.
+void take_spheres(PackingArrays& own, const std::vector<double>& values, Eigen::Index first) {
+  for (std::size_t i = 0; i < values.size(); i += record, ++first) {
+    std::memcpy(own.ids.data() + first, &values[i], sizeof(double));
+    own.positions.col(first) = Eigen::Map<const Eigen::Vector3d>(&values[i + 1]);
+    own.radii[first] = values[i + 4];
+    if (own.velocities.cols() > 0) own.velocities.col(first) = Eigen::Map<const Eigen::Vector3d>(&values[i + 5]);
+    if (own.angular_velocities.cols() > 0)
+      own.angular_velocities.col(first) = Eigen::Map<const Eigen::Vector3d>(&values[i + 8]);
+    if (own.displaced_volumes.size() > 0) own.displaced_volumes[first] = values[i + 11];
+  }
+}
+
+}  // namespace
+
+void PackingParts::deal(const Packing& rows) {
+  const Has has = has_any(rows, *ranks_);
+  std::vector<Ranks::Bytes> to(ranks_->count());
+  for (int r = 0; r < ranks_->count(); ++r)
+    for (const int k : sent_[r]) append_sphere(to[r], rows, k);
   const std::vector<Ranks::Bytes> from = ranks_->hand_over(to);
   Eigen::Index total = 0;
-  for (const Ranks::Bytes& bytes : from) total += static_cast<Eigen::Index>(bytes.size() / (record * sizeof(double)));
+  for (const Ranks::Bytes& bytes : from) {
+    received_.push_back(static_cast<int>(bytes.size() / (record * sizeof(double))));
+    total += received_.back();
+  }
   own_.ids.resize(total);
   own_.positions.resize(3, total);
   own_.radii.resize(total);
-  own_.velocities.resize(3, has[0] > 0.0 ? total : 0);
-  own_.angular_velocities.resize(3, has[1] > 0.0 ? total : 0);
-  own_.displaced_volumes.resize(has[2] > 0.0 ? total : 0);
+  own_.velocities.resize(3, has.velocities ? total : 0);
+  own_.angular_velocities.resize(3, has.spins ? total : 0);
+  own_.displaced_volumes.resize(has.displaced ? total : 0);
   Eigen::Index next = 0;
-  for (const Ranks::Bytes& bytes : from) {
-    const std::vector<double> values = values_in<double>(bytes);
-    received_.push_back(static_cast<int>(values.size() / record));
-    for (std::size_t i = 0; i < values.size(); i += record, ++next) {
-      std::memcpy(&own_.ids[next], &values[i], sizeof(double));
-      own_.positions.col(next) = Eigen::Map<const Eigen::Vector3d>(&values[i + 1]);
-      own_.radii[next] = values[i + 4];
-      if (has[0] > 0.0) own_.velocities.col(next) = Eigen::Map<const Eigen::Vector3d>(&values[i + 5]);
-      if (has[1] > 0.0) own_.angular_velocities.col(next) = Eigen::Map<const Eigen::Vector3d>(&values[i + 8]);
-      if (has[2] > 0.0) own_.displaced_volumes[next] = values[i + 11];
-    }
+  for (int r = 0; r < ranks_->count(); ++r) {
+    take_spheres(own_, values_in<double>(from[r]), next);
+    next += received_[r];
   }
 }
 

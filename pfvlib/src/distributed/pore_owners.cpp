@@ -51,17 +51,19 @@ Exchange exchange_of_spheres(const ActiveGrains& grains, const Halo& halo) {
 
 }  // namespace
 
-void find_owners(const PoreNetwork& network, const ActiveGrains& grains, const Halo& halo,
-                 const std::vector<char>& whole_cells, Share& share) {
-  const Ranks& ranks = *share.ranks;
-  const int count = ranks.count();
-  share.spheres = exchange_of_spheres(grains, halo);
-  share.own_pores.assign(network.pores(), 0);
-  share.whole_pores.assign(network.pores(), 0);
-  share.pores.sent.resize(count);
-  share.pores.received.resize(count);
-  std::vector<std::pair<Name, int>> own;
-  std::vector<Ranks::Bytes> to(count);
+namespace {
+
+using NamedPores = std::vector<std::pair<Name, int>>;
+
+/// Own pores by name, and of others' pores the names, on their way to their owners.
+struct Sorted {
+  NamedPores own;
+  std::vector<Ranks::Bytes> wanted;
+};
+
+Sorted sort_pores(const PoreNetwork& network, const ActiveGrains& grains, const Halo& halo,
+                  const std::vector<char>& whole_cells, Share& share) {
+  Sorted sorted{{}, std::vector<Ranks::Bytes>(share.ranks->count())};
   const std::vector<int> first = first_cell_of_pores(network);
   for (int pore = 0; pore < network.pores(); ++pore) {
     share.whole_pores[pore] = whole_cells[first[pore]];
@@ -69,27 +71,40 @@ void find_owners(const PoreNetwork& network, const ActiveGrains& grains, const H
     const auto& cell = network.cell_vertices[first[pore]];
     const int owner = halo.owner_of(grains.columns[cell[0]]);
     const Name name = name_of(cell, grains.spheres);
-    if (owner == ranks.own()) {
+    if (owner == share.ranks->own()) {
       share.own_pores[pore] = 1;
-      own.push_back({name, pore});
+      sorted.own.push_back({name, pore});
     } else {
-      append(to[owner], &name, 1);
+      append(sorted.wanted[owner], &name, 1);
       share.pores.received[owner].push_back(pore);
     }
   }
-  std::sort(own.begin(), own.end());
-  const std::vector<Ranks::Bytes> from = ranks.hand_over(to);
+  std::sort(sorted.own.begin(), sorted.own.end());
+  return sorted;
+}
+
+int pore_of(const Name& name, const NamedPores& own) {
+  const auto found = std::lower_bound(own.begin(), own.end(), std::pair(name, -1));
+  if (found != own.end() && found->first == name) return found->second;
+  throw SolverError("the ranks have found different pores between spheres " + text_of(name) +
+                    ": please report this; a run on one rank avoids it");
+}
+
+}  // namespace
+
+void find_owners(const PoreNetwork& network, const ActiveGrains& grains, const Halo& halo,
+                 const std::vector<char>& whole_cells, Share& share) {
+  const Ranks& ranks = *share.ranks;
+  share.spheres = exchange_of_spheres(grains, halo);
+  share.own_pores.assign(network.pores(), 0);
+  share.whole_pores.assign(network.pores(), 0);
+  share.pores.sent.resize(ranks.count());
+  share.pores.received.resize(ranks.count());
+  const Sorted sorted = sort_pores(network, grains, halo, whole_cells, share);
+  const std::vector<Ranks::Bytes> from = ranks.hand_over(sorted.wanted);
   ranks.together([&] {
-    for (int r = 0; r < count; ++r) {
-      if (r == ranks.own()) continue;
-      for (const Name& name : values_in<Name>(from[r])) {
-        const auto found = std::lower_bound(own.begin(), own.end(), std::pair(name, -1));
-        if (found == own.end() || found->first != name)
-          throw SolverError("the ranks have found different pores between spheres " + text_of(name) +
-                            ": please report this; a run on one rank avoids it");
-        share.pores.sent[r].push_back(found->second);
-      }
-    }
+    for (int r = 0; r < ranks.count(); ++r)
+      for (const Name& name : values_in<Name>(from[r])) share.pores.sent[r].push_back(pore_of(name, sorted.own));
   });
 }
 
