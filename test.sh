@@ -53,6 +53,7 @@ if [ "${1:-}" = long ]; then
   PFV_COMMAND=$root/build/bin/pfv PYTHONPATH=$root/build/python /usr/bin/python3 "$root/tests/python/test_notebooks.py" --nbclient
   "$root/doc/accuracy.py"
   "$root/doc/error_vs_time.py" solvers thresholds coupling coupling_5000 sizes models scaling
+  "$root/doc/scaling.py" million
   "$root/tests/bench/table.py"
 fi
 ctest --test-dir "$root/build" --output-on-failure -j 2

@@ -92,6 +92,26 @@ void expect_reports_agree(const pfv::Report& found, const pfv::Report& expected)
   }
 }
 
+/// What is asked for at places and over planes and slices.
+void expect_means_agree(pfv::Flow& all, pfv::Flow& one, double pressure) {
+  const pfv::Container& container = one.container();
+  const Eigen::Vector3d edges = container.upper - container.lower;
+  const pfv::Report report = one.report();
+  const double flow = std::max({report.inflow, report.outflow, 1e-6});
+  for (const double part : {0.2, 0.5, 0.77}) {
+    const double height = container.lower[2] + part * edges[2];
+    EXPECT_NEAR(all.plane_pressure(2, height), one.plane_pressure(2, height), 1e-9 * pressure);
+    EXPECT_NEAR(all.plane_flux(2, height), one.plane_flux(2, height), 1e-9 * flow);
+    const Eigen::Vector3d place = container.lower + edges.cwiseProduct(Eigen::Vector3d(0.41, 0.52, part));
+    EXPECT_NEAR(all.pressure_at(place), one.pressure_at(place), 1e-9 * pressure);
+  }
+  const pfv::SliceMeans found = all.slice_means(2, container.lower[2], container.upper[2] + 1.0);
+  const pfv::SliceMeans expected = one.slice_means(2, container.lower[2], container.upper[2] + 1.0);
+  EXPECT_EQ(found.pores, expected.pores);
+  EXPECT_NEAR(found.pressure, expected.pressure, 1e-9 * pressure);
+  EXPECT_NEAR(found.volume, expected.volume, 1e-12 * expected.volume);
+}
+
 void expect_as_on_one_rank(const Case& what) {
   const std::vector<int> columns = own_columns(what.packing, what.deal);
   const pfv::PackingArrays part = part_of(what.packing, columns);
@@ -109,6 +129,7 @@ void expect_as_on_one_rank(const Case& what) {
   EXPECT_NEAR(all.empty_space().part, one.empty_space().part, 1e-9);
   EXPECT_NEAR(all.empty_space().largest, one.empty_space().largest, 1e-9 * std::abs(one.empty_space().largest));
   expect_reports_agree(all.report(), one.report());
+  expect_means_agree(all, one, pressure);
 }
 
 pfv::Box seepage() {
@@ -250,4 +271,10 @@ TEST(SharedFlow, WhatRanksCannotDoTogetherIsRefused) {
   options = tight();
   options.shear_viscous = true;
   EXPECT_THROW(pfv::Flow(seepage(), {}, options, world()), pfv::InputError);
+  const pfv::PackingArrays packing = pfv::dense_packing(100), part = part_of(packing, own_columns(packing, Deal::by_place));
+  pfv::Flow flow(seepage(), {}, tight(), world());
+  flow.evaluate(part.view());
+  EXPECT_THROW(flow.fields(), pfv::InputError);
+  EXPECT_THROW(flow.time_step_limit(Eigen::VectorXd::Ones(part.ids.size())), pfv::InputError);
+  EXPECT_THROW(flow.advance(part.view(), 1e-3, {pfv::Coupling::staged, nullptr, true, 1.0, {}}), pfv::InputError);
 }

@@ -65,6 +65,8 @@ struct Flow::Parts {
 
   /// Throws InputError without a result.
   BuiltNetwork& network() const;
+  /// The same for what several ranks cannot tell together: throws InputError there.
+  BuiltNetwork& whole_network(const char* what) const;
   const Balance& balance();
   /// Grains that are left out because they are outside, on all ranks.
   std::int64_t outside() const;

@@ -18,6 +18,11 @@ BuiltNetwork& Flow::Parts::network() const {
   return keeper.network();
 }
 
+BuiltNetwork& Flow::Parts::whole_network(const char* what) const {
+  if (ranks) throw InputError(std::string(what) + " cannot be asked for on several ranks: run on one");
+  return network();
+}
+
 const Balance& Flow::Parts::balance() {
   if (!kept_balance)
     kept_balance = balance_of(network(), solution, work.counts.correction_solve);
@@ -72,11 +77,12 @@ double Flow::mean_pressure() const {
 
 double Flow::time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
                              const std::vector<RigidBody>& bodies) {
+  parts_->whole_network("the limit of the time step");
   return parts_->time_step_limit(masses, pistons, bodies);
 }
 
 std::vector<Eigen::Matrix3d> Flow::viscosity_matrices(const std::vector<int>& columns) const {
-  return pfv::viscosity_matrices(parts_->network(), parts_->problem(), parts_->keeper.packed(),
+  return pfv::viscosity_matrices(parts_->whole_network("the viscosity matrices"), parts_->problem(), parts_->keeper.packed(),
                                  columns, parts_->work.counts);
 }
 
@@ -94,19 +100,19 @@ std::int64_t Flow::hidden_or_outside() const {
 }
 
 Eigen::Matrix3Xd Flow::pore_velocities() const {
-  return pfv::pore_velocities(parts_->network(), parts_->balance());
+  return pfv::pore_velocities(parts_->whole_network("the velocities in pores"), parts_->balance());
 }
 
 Eigen::Matrix3Xd Flow::sphere_velocities() const {
-  return pfv::sphere_velocities(parts_->network(), parts_->balance(), parts_->keeper.packed());
+  return pfv::sphere_velocities(parts_->whole_network("the fluid's velocities at spheres"), parts_->balance(), parts_->keeper.packed());
 }
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_stresses() const {
-  return pfv::sphere_stresses(parts_->network(), parts_->solution, parts_->keeper.packed());
+  return pfv::sphere_stresses(parts_->whole_network("the stresses of spheres"), parts_->solution, parts_->keeper.packed());
 }
 
 std::vector<Field> Flow::sphere_fields() const {
-  return pfv::sphere_fields({parts_->network(), parts_->solution, parts_->balance(), parts_->keeper.packed()});
+  return pfv::sphere_fields({parts_->whole_network("the fields of spheres"), parts_->solution, parts_->balance(), parts_->keeper.packed()});
 }
 
 double Flow::plane_flux(int axis, double position) const {
@@ -128,7 +134,7 @@ const std::vector<double>& Flow::throat_conductances() const {
 
 std::vector<double> Flow::throat_fluxes() const { return parts_->balance().throat_fluxes; }
 
-Eigen::VectorXd Flow::pore_volumes() const { return pfv::pore_volumes(parts_->network()); }
+Eigen::VectorXd Flow::pore_volumes() const { return pfv::pore_volumes(parts_->whole_network("the volumes of pores")); }
 
 EmptySpace Flow::empty_space() const { return pfv::empty_space(parts_->network()); }
 
@@ -177,7 +183,7 @@ Report Flow::report() const {
 }
 
 FieldGrid Flow::fields() const {
-  return network_fields(parts_->network(), parts_->solution, parts_->balance());
+  return network_fields(parts_->whole_network("the fields"), parts_->solution, parts_->balance());
 }
 
 }  // namespace pfv

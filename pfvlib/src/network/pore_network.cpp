@@ -259,4 +259,8 @@ int locate(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vect
   return best;
 }
 
+double distance_outside(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place, int cell) {
+  return outside_by(network, spheres, place, cell).first;
+}
+
 }  // namespace pfv

@@ -42,4 +42,7 @@ PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin);
 int locate(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place,
            int start);
 
+/// How far a place lies outside a cell, m; <= 0 inside.
+double distance_outside(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place, int cell);
+
 }  // namespace pfv

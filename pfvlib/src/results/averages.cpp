@@ -83,8 +83,9 @@ double plane_flux(const BuiltNetwork& built, const Solution& solution, const Bal
   };
   double flux = 0.0;
   for (int t = 0; t < network.throats(); ++t)
-    flux += balance.throat_fluxes[t] *
-            (beyond(network.throat_pores[t][1]) - beyond(network.throat_pores[t][0]));
+    if (built.share.owns_pore(network.throat_pores[t][0]))
+      flux += balance.throat_fluxes[t] *
+              (beyond(network.throat_pores[t][1]) - beyond(network.throat_pores[t][0]));
   // what enters through the two faces crosses the plane on its way to pores on the other side
   const auto& contacts = built.boundaries.contacts;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -95,8 +96,22 @@ double plane_flux(const BuiltNetwork& built, const Solution& solution, const Bal
     if (surface.normal[axis] == 1.0)
       flux -= balance.contact_inflows[c] * (1.0 - beyond(contacts[c].pore));
   }
-  return flux;
+  return built.share.sum(flux);
 }
+
+namespace {
+
+void add_up(SliceMeans& means, const Share& share) {
+  Eigen::VectorXd sums(6);
+  sums << means.pores, means.volume, means.pressure, means.velocity;
+  share.add(sums);
+  means.pores = static_cast<int>(sums[0]);
+  means.volume = sums[1];
+  means.pressure = sums[2];
+  means.velocity = sums.tail<3>();
+}
+
+}  // namespace
 
 SliceMeans slice_means(const BuiltNetwork& built, const Solution& solution, const Balance& balance,
                        int axis, double lower, double upper) {
@@ -105,6 +120,7 @@ SliceMeans slice_means(const BuiltNetwork& built, const Solution& solution, cons
   const Eigen::VectorXd volumes = storage_volumes(built.throats);
   SliceMeans means;
   for (int p = 0; p < built.network.pores(); ++p) {
+    if (!built.share.owns_pore(p)) continue;
     const double place = built.network.pore_centres(axis, p) + built.network.origin[axis];
     if (!(place >= lower && place < upper)) continue;
     ++means.pores;
@@ -112,6 +128,7 @@ SliceMeans slice_means(const BuiltNetwork& built, const Solution& solution, cons
     means.pressure += volumes[p] * solution.pressures[p];
     means.velocity += integrals.col(p);
   }
+  add_up(means, built.share);
   if (means.pores == 0)
     throw InputError("no pore has its centre between " + std::to_string(lower) + " and " +
                      std::to_string(upper) + " m");
@@ -120,19 +137,38 @@ SliceMeans slice_means(const BuiltNetwork& built, const Solution& solution, cons
   return means;
 }
 
+namespace {
+
+/// Of the lowest rank in whose part the place lies.
+double shared_pressure_at(const BuiltNetwork& built, const Solution& solution, const Eigen::Vector3d& relative) {
+  const Share& share = built.share;
+  double outside = std::numeric_limits<double>::infinity(), pressure = 0.0;
+  if (built.network.cells() > 0) {
+    const int cell = locate(built.network, built.vertices, relative, 0), pore = built.network.cell_pore[cell];
+    pressure = solution.pressures[pore];
+    if (share.whole_pores[pore]) outside = std::max(0.0, distance_outside(built.network, built.vertices, relative, cell));
+  }
+  const bool nearest = -share.largest(-outside) == outside;
+  const double rank = -share.ranks->own();
+  const bool tells = share.largest(nearest ? rank : -share.ranks->count()) == rank;
+  return share.sum(tells ? pressure : 0.0);
+}
+
+}  // namespace
+
 double pressure_at(const BuiltNetwork& built, const Solution& solution,
                    const Eigen::Vector3d& place) {
   const Spheres& spheres = built.vertices;
   const Eigen::Vector3d relative = place - built.network.origin;
-  bool within = built.network.cells() > 0 && (relative.array() >= 0.0).all() &&
+  bool within = built.share.any(built.network.cells() > 0) && (relative.array() >= 0.0).all() &&
                 (relative.array() <= spheres.edges.array()).all();
   const double round_off = -1e-9 * spheres.edges.maxCoeff();
   for (const WallSurface& wall : spheres.walls)  // a plane normal to an axis is a bound of the edges
     within = within && (wall.axis >= 0 || wall.surface.distance(relative) >= round_off);
   if (!within)
     throw InputError("no pressure at a place outside the container (or in one without grains)");
-  const int cell = locate(built.network, spheres, relative, 0);
-  return solution.pressures[built.network.cell_pore[cell]];
+  return built.share.ranks ? shared_pressure_at(built, solution, relative)
+                           : solution.pressures[built.network.cell_pore[locate(built.network, spheres, relative, 0)]];
 }
 
 double plane_pressure(BuiltNetwork& built, const Solution& solution, int axis, double position) {
@@ -145,14 +181,17 @@ double plane_pressure(BuiltNetwork& built, const Solution& solution, int axis, d
   for (int c = 0; c < built.network.cells(); ++c) {
     if (extents->low[c] > relative || relative > extents->high[c]) continue;
     const int pore = built.network.cell_pore[c];
-    if (counted[pore]) continue;
+    if (counted[pore] || !built.share.owns_pore(pore)) continue;
     counted[pore] = 1;
     sum += solution.pressures[pore];
     ++count;
   }
-  if (count == 0)
+  Eigen::VectorXd sums(2);
+  sums << sum, count;
+  built.share.add(sums);
+  if (sums[1] == 0.0)
     throw InputError("the plane at " + std::to_string(position) + " m cuts no pore");
-  return sum / count;
+  return sums[0] / sums[1];
 }
 
 double mean_pressure(const BuiltNetwork& built, const Solution& solution) {
