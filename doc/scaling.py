@@ -108,7 +108,7 @@ def replace(name, text):
     page = PAGE.read_text()
     begin, end = f"<!-- {name}: made by doc/scaling.py -->\n", "\n<!-- end -->"
     first = page.index(begin) + len(begin)
-    PAGE.write_text(page[:first] + text + page[page.index(end, first):])
+    PAGE.write_text(page[:first] + text + page[page.index(end, first - 1):])
 
 
 def main():

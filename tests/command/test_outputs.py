@@ -6,7 +6,7 @@ import unittest
 
 from command import DENSE, THROUGH_FLOW, CommandTest, dense_rows, with_velocities
 
-INTEGERS = "spheres hidden outside pores unknowns threads peak_memory_bytes".split()
+INTEGERS = "spheres hidden outside pores unknowns threads ranks peak_memory_bytes".split()
 NUMBERS = ("porosity pore_volume solid_area inflow outflow volume_rate_sum storage_rate mass_error "
            "fluid_volume fluid_came_in fluid_balance_error force_balance_error residual").split()
 COUNTS = ("triangulate order factor solve correction_solve limit_solve query_solve background force_matrix "
