@@ -24,6 +24,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "inputs/common"))
+import plotting
+
 BIN = pathlib.Path(os.environ.get("PFV_BIN", ROOT / "build/bin"))
 KEPT = ROOT / "build" / "error_vs_time"  # runs
 MEASURED = pathlib.Path(__file__).with_suffix(".json")  # what the page shows
@@ -116,7 +119,7 @@ def write_solvers(rows):
     figure, axes = plt.subplots(figsize=(6, 4))
     styles = {"supernodal": "ko", "cg": "b^", "amg": "gD", "gauss_seidel": "rs"}
     largest = max(row["spheres"] for row in rows)
-    shown = set()
+    shown, named = set(), []
     for row in rows:
         if row["spheres"] != largest:
             continue
@@ -124,11 +127,13 @@ def write_solvers(rows):
         shown.add(row["solver"])
         axes.loglog(row["step"], max(row["force_error"], 1e-15), styles[row["solver"]], label=label)
         if row["tolerance"]:
-            axes.annotate(f"  {row['tolerance']:.0e}", (row["step"], row["force_error"]))
+            named.append(((row["step"], row["force_error"]), f"{row['tolerance']:.0e}"))
     axes.set(xlabel="CPU s a step on the kept network",
              ylabel="error of the forces (rms, relative)", title=f"{largest} spheres")
     axes.grid(alpha=0.3)
     axes.legend()
+    figure.tight_layout()
+    plotting.name_points(axes, *zip(*named))
     save(figure, "solvers")
     lines = ["| spheres | solver | tolerance | first solution, s | a further step, s | "
              "flow error (5.6) | force error | thesis: Gauss-Seidel 1e-6 / PARDISO / TAUCS, s | "
@@ -273,13 +278,14 @@ def write_coupling_5000(rows):
 
 def draw_runs(rows, name, label):
     figure, axes = plt.subplots(figsize=(6, 4))
-    for row in rows[1:]:
-        if "unstable" in row:
-            continue
-        axes.loglog(row["cpu"], 100 * max(row["p_max"], 1e-7), "ko")
-        axes.annotate("  " + label(row), (row["cpu"], 100 * max(row["p_max"], 1e-7)))
+    shown = [row for row in rows[1:] if "unstable" not in row]
+    points = [(row["cpu"], 100 * max(row["p_max"], 1e-7)) for row in shown]
+    axes.loglog(*zip(*points), "ko")
+    axes.margins(x=0.15)
     axes.set(xlabel="CPU s of the coupled run", ylabel="largest error of p(H/2), % of the load")
     axes.grid(alpha=0.3, which="both")
+    figure.tight_layout()
+    plotting.name_points(axes, points, [label(row) for row in shown])
     save(figure, name)
 
 

@@ -3,9 +3,9 @@
 
     PYTHONPATH=build/python yade -n -x -j1 inputs/hosts/yade_oedometer.py [N=500] [OUT=FILE.json]
 
-Spheres are compressed to 10 kPa; then the load on the top rises by 2 kPa at once, and water leaves through the top. The
-modulus comes from the same step without water, the permeability from each engine with the grains at rest; nothing is
-fitted. Prints a table and writes OUT.
+Spheres are compressed to 10 kPa and loaded and unloaded by 2 kPa until they answer elastically; then the load on the top
+rises by 2 kPa at once, and water leaves through the top. The modulus comes from the same step without water, the
+permeability from each engine with the grains at rest; nothing is fitted. Prints a table and writes OUT.
 """
 import json
 import math
@@ -22,7 +22,7 @@ import terzaghi
 from yade_flow import Fluid
 
 SETTINGS = {"N": 500, "OUT": "yade_oedometer.json", **dict(word.split("=", 1) for word in sys.argv[1:])}
-CONFINING, LOAD, VISCOSITY, YOUNG = 10e3, 2e3, 20.0, 5e6  # Pa, Pa, Pa s, Pa
+CONFINING, LOAD, VISCOSITY, YOUNG = 10e3, 2e3, 60.0, 5e6  # Pa, Pa, Pa s, Pa
 DRAINED_TOP = {"yhi": {"pressure": 0.0}}
 STEPS_A_UNIT = 4000  # of T_v
 
@@ -112,31 +112,27 @@ class WithFlowEngine:
 
 # ------------------------------------------------------------------------------------------- runs
 
-def load_top(time_step):
-    """No side moves but the top, which has the load more; from here on the step is fixed (0: as it is)."""
+def hold_sides():
+    """From here on the top alone moves."""
     press.stressMask, press.internalCompaction, press.wall_bottom_activated = 2, False, False
     press.goal1 = press.goal3 = 0
-    press.goal2 = -CONFINING - LOAD
-    stepper.active = False
-    O.dt = time_step or O.dt
 
 
-def dry_settlement(walls):
-    """Without water, the load in small parts, so that no swing compacts the grains."""
-    O.loadTmp("sample")
-    load_top(0)
-    before, parts = edges(walls)[1], 40
+def load_dry(walls, before, after, parts=20):
+    """The settlement (m) without water, the load in small parts, so that no swing compacts the grains."""
+    height = edges(walls)[1]
     for part in range(1, parts + 1):
-        press.goal2 = -CONFINING - LOAD * part / parts
-        O.run(500, True)
-    O.run(4000, True)
-    return before - edges(walls)[1]
+        press.goal2 = -CONFINING - before - (after - before) * part / parts
+        O.run(300, True)
+    O.run(3000, True)
+    return height - edges(walls)[1]
 
 
 def consolidate(engine, walls, coefficient, time_step, until):
     """Rows of T_v, settlement (m), pressure at mid-height (Pa), and CPU seconds a step."""
     O.loadTmp("sample")
-    load_top(time_step)
+    press.goal2 = -CONFINING - LOAD
+    stepper.active, O.dt = False, time_step
     engine.begin(walls)
     before, rows, begin, start = edges(walls)[1], [], time.process_time(), O.iter
     while (O.iter - start) * time_step * coefficient < until:
@@ -166,8 +162,12 @@ def compare(name, engine, walls, settlement):
 
 def main():
     walls = make_sample()
+    hold_sides()
+    for _ in range(3):
+        load_dry(walls, 0, LOAD)
+        load_dry(walls, LOAD, 0)
     O.saveTmp("sample")
-    settlement = dry_settlement(walls)
+    settlement = load_dry(walls, 0, LOAD)
     engines = {"FlowEngine": WithFlowEngine(), "pfv": WithPfv(), "pfv, partition yade": WithPfv(partition="yade")}
     results = {name: compare(name, engine, walls, settlement) for name, engine in engines.items()}
     with open(SETTINGS["OUT"], "w", encoding="ascii") as file:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`python3 -m pfv.plot`: what a file holds becomes a figure, whose texts do not lie on each other."""
 import itertools
+import pathlib
 import subprocess
 import sys
 import unittest
@@ -10,6 +11,10 @@ import pfv
 import pfv.plot
 from case import DATA, UNIT, CommandCase, grains, through_flow
 from matplotlib.text import Text
+from PIL import Image
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "inputs/common"))
+import plotting
 
 HISTORY = ("step,time,strain,networks,steps,solves,inflow,outflow,volume_rate_sum,storage_rate,mass_error,"
            "force_balance_error,fluid_balance_error,mean_pressure,porosity,permeability,hidden,stages,force_x,force_y,"
@@ -34,7 +39,7 @@ def overlapping_texts(figure):
         low, high = sorted(axis.get_view_interval())
         beyond.update(label for tick in axis.get_major_ticks() + axis.get_minor_ticks()
                       if not low <= tick.get_loc() <= high for label in (tick.label1, tick.label2))
-    seen = [(text.get_text(), text.get_window_extent(drawn)) for text in figure.findobj(Text)
+    seen = [(text.get_text(), Text.get_window_extent(text, drawn)) for text in figure.findobj(Text)  # without lines of names
             if text.get_text().strip() and text.get_visible() and text not in beyond]
     return [(a, b) for (a, one), (b, other) in itertools.combinations(seen, 2)
             if min(one.x1, other.x1) - max(one.x0, other.x0) > 1 and min(one.y1, other.y1) - max(one.y0, other.y0) > 1]
@@ -92,6 +97,24 @@ class Plot(CommandCase):
         flow.write_fields(self.folder / "pores.vtu")
         figure = self.assert_readable(pfv.plot.figure(self.folder / "pores.vtu"))
         self.assertEqual(len(figure.axes), 4)
+
+    def test_names_of_points_that_lie_close(self):
+        figure, axes = plotting.plt.subplots()
+        points = [(1, 1), (1.01, 1.01), (1.02, 1), (1.03, 1.015), (2, 2)]
+        axes.plot(*zip(*points), "ko")
+        plotting.name_points(axes, points, [f"point number {k}" for k in range(5)])
+        self.assert_readable(figure)
+        plotting.plt.close(figure)
+
+    def test_sheet_has_each_picture_once(self):
+        for name, size, colour in (("a.png", (300, 100), "red"), ("b.png", (100, 100), "blue"), ("c.png", (100, 90), "green")):
+            Image.new("RGB", size, colour).save(self.folder / name)
+        plotting.contact_sheet(sorted(self.folder.glob("?.png")), self.folder / "sheet.png", width=600)
+        with Image.open(self.folder / "sheet.png") as sheet:
+            self.assertEqual(sheet.width, 600)
+            counted = {colour: number for number, colour in sheet.getcolors()}
+        self.assertEqual(counted[255, 0, 0], 600 * 200)  # a row of its own
+        self.assertEqual(set(counted), {(255, 0, 0), (0, 0, 255), (0, 128, 0), (255, 255, 255)})
 
     def test_command_writes_a_picture_or_says_what_is_wrong(self):
         self.write("s.csv", "time,0.1 0.2 0.3\n0,1\n1,3\n")

@@ -5,6 +5,7 @@ import ctypes
 import ctypes.util
 import os
 import shutil
+import signal
 import subprocess
 
 _SENTENCE = ("there is no screen, and VTK as Debian builds it draws on none: install xvfb, or set DISPLAY to a "
@@ -26,12 +27,19 @@ def _reachable():
     return True
 
 
+def _end_with_parent():
+    """Also where that is killed."""
+    set_signal_of_parents_death = 1
+    ctypes.CDLL(None).prctl(set_signal_of_parents_death, signal.SIGTERM)
+
+
 def _begin_virtual_screen(program):
     """Xvfb picks a free number and says it once it answers; it ends with this process."""
     reading, writing = os.pipe()
     # -noreset: it would begin anew whenever a window has gone, and refuse the next one meanwhile
     server = subprocess.Popen([program, "-displayfd", str(writing), "-screen", "0", "1600x1200x24", "-nolisten", "tcp",
-                               "-noreset"], pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                               "-noreset"], pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                              preexec_fn=_end_with_parent)
     os.close(writing)
     with os.fdopen(reading) as said:
         number = said.readline().strip()
