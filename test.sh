@@ -37,6 +37,8 @@ if [ "${1:-}" = long ]; then
   "$root/tests/sanitizer_reports.py" "$logs"/*
   rm -r "$logs"
   "$root/build/bin/fuzz" --count 10000 --seed 1
+  PFV_RANK_PACKINGS=20000 mpirun --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 -n 4 \
+    "$root/build/bin/ranks_tests" --gtest_filter='*HardToTriangulate'
   "$root/build/bin/fuzz" --count 10000 --seed 2
   "$root/run.sh" oedometer N=5000
   "$root/run.sh" oedometer study

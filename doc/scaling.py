@@ -3,8 +3,8 @@
 """The tables of doc/scaling.md:  doc/scaling.py [million]
 
 `pfv solve` of dense packings on several ranks, and on one from 25 000 grains on; with `million` up to a million, which
-takes 9 GB. Every packing is made of mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some
-five minutes; with `million` a quarter of an hour.
+takes 9 GB. Every packing is made of mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. A
+minute or two; with `million` three.
 """
 import json
 import os

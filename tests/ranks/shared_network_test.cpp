@@ -157,12 +157,16 @@ TEST(SharedNetwork, IsThatOfOneRankInContainers) {
 /// PFV_RANK_PACKINGS: how many.
 TEST(SharedNetwork, IsThatOfOneRankForWhatIsHardToTriangulate) {
   const char* wanted = std::getenv("PFV_RANK_PACKINGS");
-  const int count = wanted ? std::atoi(wanted) : 60;
+  const int count = wanted ? std::atoi(wanted) : 200;
   support::Random random(11);
   for (int i = 0; i < count; ++i) {
     SCOPED_TRACE("packing " + std::to_string(i));
-    const auto kind = static_cast<std::size_t>(i) % support::adversarial::kinds.size();
-    const pfv::PackingArrays packing = numbered(support::packing_of(support::adversarial::spheres_of(kind, random)));
+    const auto kind = static_cast<std::size_t>(i) % (support::adversarial::kinds.size() + 1);
+    const bool plain = kind == support::adversarial::kinds.size();
+    const pfv::PackingArrays packing =
+        numbered(plain ? support::random_packing(support::whole(random, 20, 150), 0.02, random(0.03, 0.09),
+                                                 static_cast<std::uint64_t>(i))
+                       : support::packing_of(support::adversarial::spheres_of(kind, random)));
     expect_same(packing, pfv::Box{}, i % 2 ? Deal::at_random : Deal::by_place);
     if (HasFailure()) return;
   }
