@@ -168,6 +168,20 @@ void parse_container(Words& words, PfvSettings& settings) {
   settings.flats = words.take("flats");
 }
 
+void parse_obstacle(Words& words, PfvSettings& settings) {
+  if (settings.box.any_periodic())
+    throw pfv::InputError("obstacle: it takes no periodic sides; use `boundary f f f`");
+  if (!words.take("mesh")) words.fail("obstacle must be followed by mesh FIX_ID");
+  PfvObstacleSource obstacle;
+  obstacle.fix_id = words.word("the ID of a fix mesh/surface");
+  if (words.take("diameter")) obstacle.diameter = words.number("the spheres' diameter", demands::positive);
+  const auto same = [&](const auto& other) { return other.fix_id == obstacle.fix_id; };
+  if (std::any_of(settings.obstacles.begin(), settings.obstacles.end(), same) ||
+      std::any_of(settings.sources.begin(), settings.sources.end(), same))
+    words.fail("mesh " + obstacle.fix_id + " is given twice, as an obstacle or as a face");
+  settings.obstacles.push_back(obstacle);
+}
+
 void parse_patch(Words& words, PfvSettings& settings) {
   if (settings.container) words.fail("a container has no patches; give a region a pressure or flux");
   pfv::Patch patch;
@@ -278,6 +292,7 @@ struct Keyword {
 };
 constexpr Keyword keywords[]{{"container", false, parse_container},
                              {"face", true, parse_face},
+                             {"obstacle", true, parse_obstacle},
                              {"patch", true, parse_patch},
                              {"region", true, parse_region},
                              {"point", true, parse_point},
@@ -332,6 +347,8 @@ void check_all(PfvSettings& settings) {
   pfv::check(settings);
   if (settings.model == pfv::Model::darcy_grid && settings.container)
     throw pfv::InputError("darcy_grid takes no container: leave it away, or use the model pfv");
+  if (settings.model == pfv::Model::darcy_grid && !settings.obstacles.empty())
+    throw pfv::InputError("darcy_grid knows no obstacle: leave it away, or use the model pfv");
   if (settings.model == pfv::Model::darcy_grid && settings.flux_profile)
     throw pfv::InputError("darcy_grid has no flux_profile: leave it away, or use the model pfv");
 }

@@ -64,6 +64,12 @@ struct PfvFieldOutput {
   std::string path;  ///< ends in .pvd
 };
 
+/// A mesh that stands among the grains.
+struct PfvObstacleSource {
+  std::string fix_id;
+  double diameter = 0.0;  ///< of its smallest spheres, m; 0: from the grains
+};
+
 /// Gravity is set later, from `fix gravity`; so are positions and velocities of the box' faces.
 struct PfvSettings : pfv::Settings {
   pfv::Box box;
@@ -75,6 +81,7 @@ struct PfvSettings : pfv::Settings {
   std::vector<pfv::ContainerFace> faces;
   std::vector<PfvFaceSource> sources = std::vector<PfvFaceSource>(6);  ///< of the box's faces, or of these
   std::array<std::optional<PfvCosine>, 6> profiles;
+  std::vector<PfvObstacleSource> obstacles;
   std::vector<PfvBinding> bindings;
   std::optional<PfvFieldOutput> fields;
   std::optional<PfvProfileOutput> profile, flux_profile;

@@ -78,10 +78,10 @@ void PfvBodies::add_loads_from_outside(const PfvBodyList& list, const std::map<P
 }
 
 void PfvBodies::apply(const PfvGroups& groups, const Eigen::Vector3d& gravity, PfvGrainExchange& grains) {
-  const PfvBodySources sources(lmp);
-  if (!sources.any()) return;
   rigid_.clear();
   obstacle_.clear();
+  const PfvBodySources sources(lmp);
+  if (!sources.any()) return;
   const PfvBodyList list = sources.gather(groups);
   if (comm->me != 0 || list.bodies.empty()) return;
 

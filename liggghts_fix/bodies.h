@@ -28,6 +28,8 @@ class PfvBodies : protected Pointers {
   const std::vector<pfv::RigidBody>& rigid() const { return rigid_; }
   /// Why the flow cannot take long steps with these bodies, or nothing; rank 0.
   const std::string& obstacle() const { return obstacle_; }
+  /// One more, which no force moves, for spheres that are no grains; rank 0, after `apply`.
+  void add_held(const pfv::RigidBody& body) { rigid_.push_back(body); }
   /// Volumes are found anew from the places of the spheres, which round-off tells from those before.
   void forget() { known_.clear(); }
 

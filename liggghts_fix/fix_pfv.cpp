@@ -29,7 +29,8 @@ namespace LAMMPS_NS {
 
 using namespace FixConst;
 
-FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), cell_(lmp), grains_(lmp), bodies_(lmp) {
+FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), cell_(lmp), grains_(lmp), bodies_(lmp),
+      obstacles_(lmp) {
   check_environment();
   everywhere([&] {
     settings_ = parse_pfv(narg - 3, arg + 3, cell_.axes());
@@ -38,7 +39,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
 
   scalar_flag = vector_flag = 1;
-  size_vector = 10;
+  size_vector = own_quantities + 6 * static_cast<int>(settings_.obstacles.size());
   extscalar = extvector = 0;
   global_freq = 1;
   peratom_flag = 1;
@@ -76,7 +77,10 @@ void FixPfv::init() {
   check_other_fixes();
   bind_coupling();
   check_cell();
-  everywhere([&] { faces_.bind(settings_); });
+  everywhere([&] {
+    faces_.bind(settings_);
+    obstacles_.bind(settings_, groupbit);
+  });
   array_atom = per_atom_->array_atom;
   // computes behind variables have to be ready for the setup's evaluation
   if (!settings_.bindings.empty()) modify->addstep_compute_all(update->ntimestep);
@@ -190,7 +194,10 @@ void FixPfv::check_other_fixes() {
 void FixPfv::read_host() {
   grains_.gather(others_.groups, needs_forces(), cell_.streaming(since_.cell_rates));
   bodies_.apply(others_.groups, settings_.fluid.gravity, grains_);
-  everywhere([&] { faces_.read(); });
+  everywhere([&] {
+    faces_.read();
+    obstacles_.read();
+  });
   faces_.read_pistons(needs_forces());
 }
 
@@ -201,7 +208,7 @@ void FixPfv::begin_anew_where_moved() {
   int moved = 0;
   on_root([&] {
     if (!flow_.has_left()) return;
-    const pfv::Packing packing = grains_.packing();
+    const pfv::Packing packing = grains_.grains();
     faces_.follow_grains(packing.positions, packing.radii);
     moved = flow_.begins_anew(state_of(grains_));
   });
@@ -216,14 +223,17 @@ void FixPfv::begin_anew_where_moved() {
   since_.time = 0.0;
   since_.face_positions = faces_.positions();
   since_.pivots = faces_.pivots();
-  since_.grains = grains_.snapshot();
+  since_.grains = {};
 }
 
 /// What the next run compares with. The grains of the last flow step stay as they were gathered.
 void FixPfv::remember_state() {
   PfvGrainExchange now(lmp);
   now.gather(others_.groups, false);
-  everywhere([&] { faces_.read(); });
+  everywhere([&] {
+    faces_.read();
+    obstacles_.read();
+  });
   on_root([&] {
     const pfv::Packing packing = now.packing();
     if (packing.size() > 0) faces_.follow_grains(packing.positions, packing.radii);
@@ -232,9 +242,12 @@ void FixPfv::remember_state() {
 }
 
 PfvLeftState FixPfv::state_of(const PfvGrainExchange& grains) {
-  Eigen::Matrix3Xd positions = grains.packing().positions;
+  const pfv::Packing packing = grains.grains();
+  Eigen::Matrix3Xd positions = packing.positions;
   cell_.wrap(positions);
-  return left_state(grains.packing(), positions, faces_.positions());
+  std::vector<double> places = faces_.positions();
+  for (const double place : obstacles_.places()) places.push_back(place);
+  return left_state(packing, positions, places);
 }
 
 Eigen::Vector3d FixPfv::gravity() const {
@@ -272,7 +285,7 @@ void FixPfv::setup(int) {
   on_root([&] {
     place_faces(container_);
     warn_of_empty_box();
-    for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.packing())) warn_of(warning);
+    for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.grains())) warn_of(warning);
     flow_.prepare(container_, settings_, grains_.packing(), flow_step());
     check_servos();
     call_flow(flow_step(), false);
@@ -330,6 +343,7 @@ void FixPfv::advance() {
 void FixPfv::after_flow_call() {
   on_root([&] {
     flow_.forget_report();
+    obstacles_.take_loads(grains_, flow_->forces());
     files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep);
     if (files_->history_due(update->ntimestep))
       files_->write_history(history_row(*flow_, flow_.report(), update->ntimestep, schedule_.taken()));
@@ -354,7 +368,9 @@ void FixPfv::apply_forces() {
 }
 
 void FixPfv::push_meshes() {
-  if (comm->me != 0 || !faces_.any_mesh()) return;
+  if (comm->me != 0) return;
+  obstacles_.push();
+  if (!faces_.any_mesh()) return;
   std::vector<Eigen::Vector3d> forces = flow_->face_forces();
   if (const double trend = schedule_.steps_of_trend(since_.steps); trend != 0.0)
     for (std::size_t f = 0; f < forces.size(); ++f)
@@ -393,9 +409,11 @@ void FixPfv::write_restart(FILE* file) {
     if (flow_) place_faces(container_);
     if (auto state = flow_.state_on_new_network(container_, grains_.packing(), flow_step()))
       record.flow = std::move(*state);
+    if (flow_ && since_.grains.tags.empty()) since_.grains = grains_.snapshot();
     if (settings_.steps.couple_every > 1 || settings_.steps.couple_error || cell_.changes())
       record.last_grains = since_.grains;
     record.written = files_->written();
+    if (obstacles_.any()) record.obstacles = obstacles_.record();
     const std::vector<double> data = pack(record);
     const int bytes = static_cast<int>(data.size() * sizeof(double));
     if (std::fwrite(&bytes, sizeof bytes, 1, file) != 1 ||
@@ -413,6 +431,7 @@ void FixPfv::restart(char* bytes) {
     since_.face_positions = record.last_positions;
     since_.cell_rates = record.cell_rates;
     schedule_.go_on_after(record.taken);
+    obstacles_.restore(record.obstacles);
     if (!files_) return;  // not rank 0
     since_.grains = std::move(record.last_grains);
     files_->resume(record.step, record.flow.time, std::move(record.written));

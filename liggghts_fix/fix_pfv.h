@@ -15,6 +15,7 @@ FixStyle(pfv,FixPfv)
 #include "found_walls.h"
 #include "grain_exchange.h"
 #include "kept_flow.h"
+#include "obstacles.h"
 #include "other_fixes.h"
 #include "restart_record.h"
 #include "result_files.h"
@@ -55,6 +56,8 @@ class FixPfv : public Fix {
   double memory_usage() override;
 
  private:
+  static constexpr int own_quantities = 10;  ///< of compute_vector; those of the obstacles follow
+
   // errors: each ends the run on all ranks, with one line
   template <typename Work>
   void everywhere(Work&& work);  ///< work that fails on all ranks or on none
@@ -88,6 +91,7 @@ class FixPfv : public Fix {
   void warn_of_gaps(const std::vector<double>& mesh_areas) const;
   void say_what_holds_the_fluid();
   void say_what_is_filled();
+  std::int64_t hidden_or_outside() const;
   Eigen::Vector3d gravity() const;
   void after_flow_call();
   void apply_forces();
@@ -123,6 +127,7 @@ class FixPfv : public Fix {
   PfvPeriodicCell cell_;
   PfvGrainExchange grains_;
   PfvBodies bodies_;
+  PfvObstacles obstacles_;
   PfvOfOthers others_;
   class FixPropertyAtom* per_atom_ = nullptr;
   pfv::Container container_;

@@ -31,10 +31,11 @@ double FixPfv::quantity(int n) {
     case 4: return static_cast<double>(flow_->retriangulations());
     case 5: return flow_->time_step_limit(grains_.masses(), faces_.pistons(), bodies_.rigid());
     case 6: return flow_->mean_pressure();
-    case 7: return static_cast<double>(flow_->hidden_or_outside());
+    case 7: return static_cast<double>(hidden_or_outside());
     case 8: return static_cast<double>(flow_->stages());
     case 9: return static_cast<double>(since_.steps);
-    default: return flow_->strain();
+    case -1: return flow_->strain();
+    default: return obstacles_.load(n - own_quantities);
   }
 }
 

@@ -76,24 +76,26 @@ Eigen::Vector3d FixPfv::cell_lengths_then() const {
   return lengths;
 }
 
-/// Completes the container on rank 0, where the grains are.
+/// Completes the container on rank 0, where the grains are, and the grains with the obstacles in it.
 void FixPfv::place_faces(pfv::Container& container) {
-  const pfv::Packing packing = grains_.packing();
+  const pfv::Packing packing = grains_.grains();
   faces_.follow_grains(packing.positions, packing.radii);
   if (settings_.container) {
     for (int number = 0; number < container.face_count(); ++number)
       container.faces[number].surface = faces_.surface(number);
-    if (flow_ && pfv::take_bounds(container, flow_->container())) return;
-    pfv::Container whole = pfv::container_of(container.faces);
-    whole.regions = container.regions;
-    container = std::move(whole);
-    return;
+    if (!flow_ || !pfv::take_bounds(container, flow_->container())) {
+      pfv::Container whole = pfv::container_of(container.faces);
+      whole.regions = container.regions;
+      container = std::move(whole);
+    }
+  } else {
+    pfv::Box box = *pfv::box_of(container);
+    for (const pfv::Face face : pfv::all_faces)
+      (pfv::is_upper(face) ? box.upper : box.lower)[pfv::axis_of(face)] =
+          faces_.positions()[static_cast<int>(face)];
+    container = box;
   }
-  pfv::Box box = *pfv::box_of(container);
-  for (const pfv::Face face : pfv::all_faces)
-    (pfv::is_upper(face) ? box.upper : box.lower)[pfv::axis_of(face)] =
-        faces_.positions()[static_cast<int>(face)];
-  container = box;
+  obstacles_.add_to(grains_, bodies_, container);
 }
 
 void FixPfv::use_mean_velocities_of_faces() {
@@ -110,7 +112,7 @@ void FixPfv::use_mean_velocities_of_faces() {
 /// Grains that are there but all outside: most likely the box or the units are not those meant. A box
 /// that grains will be poured into has none yet, and is left in peace. Rank 0.
 void FixPfv::warn_of_empty_box() const {
-  const pfv::Packing packing = grains_.packing();
+  const pfv::Packing packing = grains_.grains();
   const auto is_inside = [&](Eigen::Index k) {
     return std::all_of(container_.faces.begin(), container_.faces.end(), [&](const pfv::ContainerFace& face) {
       return face.surface.distance(packing.positions.col(k)) > 0.0;
@@ -163,10 +165,28 @@ void FixPfv::say_what_holds_the_fluid() {
   for (const std::string& reason : left_out_) print(beginning + "left out: " + reason + "\n");
 }
 
+/// Of the grains, without the spheres of obstacles. Rank 0.
+std::int64_t FixPfv::hidden_or_outside() const {
+  if (!obstacles_.any()) return flow_->hidden_or_outside();
+  const pfv::Packing packing = grains_.grains();
+  const std::vector<int> hidden = flow_->hidden();
+  std::int64_t count = 0;
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    const Eigen::Vector3d centre = packing.positions.col(k);
+    count += std::any_of(container_.faces.begin(), container_.faces.end(),
+                         [&](const pfv::ContainerFace& face) { return !(face.surface.distance(centre) > 0.0); }) ||
+             std::find(hidden.begin(), hidden.end(), k) != hidden.end();
+  }
+  return count;
+}
+
 /// A line from which a wrong unit, a box beside the grains or one that is mostly empty is seen. Rank 0.
 void FixPfv::say_what_is_filled() {
-  const pfv::Packing packing = grains_.packing();
-  const std::int64_t outside = flow_->hidden_or_outside() - static_cast<std::int64_t>(flow_->hidden().size());
+  const pfv::Packing packing = grains_.grains();
+  for (const std::string& line : obstacles_.news()) print("Fix pfv (id " + std::string(id) + "): " + line + "\n");
+  const auto is_grain = [&](int column) { return column < packing.size(); };
+  const std::vector<int> hidden = flow_->hidden();
+  const std::int64_t outside = hidden_or_outside() - std::count_if(hidden.begin(), hidden.end(), is_grain);
   const double volume = pfv::volume_of(container_);
   const double solid = 4.0 / 3.0 * M_PI * packing.radii.array().cube().sum();
   char text[300];

@@ -30,10 +30,17 @@ constexpr double among_grains = 0.01;
 /// Directions, places and volumes of walls that differ by less are the same: STL files carry some seven digits.
 constexpr double same = 1e-6;
 
+bool is_obstacle(const PfvSettings& settings, const std::string& id) {
+  return std::any_of(settings.obstacles.begin(), settings.obstacles.end(),
+                     [&](const PfvObstacleSource& obstacle) { return obstacle.fix_id == id; });
+}
+
+/// A face already, or none since it stands inside.
 bool is_source(const PfvSettings& settings, const std::string& id) {
-  return std::any_of(settings.sources.begin(), settings.sources.end(), [&](const PfvFaceSource& source) {
-    return (source.kind == Source::wall || source.kind == Source::mesh) && source.fix_id == id;
-  });
+  return is_obstacle(settings, id) ||
+         std::any_of(settings.sources.begin(), settings.sources.end(), [&](const PfvFaceSource& source) {
+           return (source.kind == Source::wall || source.kind == Source::mesh) && source.fix_id == id;
+         });
 }
 
 PfvFaceSource source_of(const PfvWall& wall) {
@@ -164,7 +171,8 @@ std::string PfvFoundWalls::reason_to_leave_out(const PfvWall& wall) const {
   // a single plane does not say on which side the fluid is
   if (surfaces.size() == 1 && surfaces[0].is_plane() && beyond > within) std::swap(within, beyond);
   if (beyond <= among_grains * static_cast<double>(within + beyond)) return {};
-  return what + "has " + std::to_string(beyond) + " of " + std::to_string(within + beyond) + " grains on its other side";
+  return what + "has " + std::to_string(beyond) + " of " + std::to_string(within + beyond) + " grains on its other side" +
+         (wall.mesh ? "; if it stands among the grains, `obstacle mesh " + wall.id + "` makes the fluid see it" : std::string());
 }
 
 void PfvFoundWalls::add_walls(PfvSettings& settings, std::vector<std::string>& left_out) const {

@@ -106,6 +106,31 @@ void PfvGrainExchange::unpack() {
   }
 }
 
+void PfvGrainExchange::add(const pfv::Obstacle& obstacle, const pfv::ObstacleMotion& motion, std::int64_t first_id,
+                           const pfv::Container& container) {
+  pfv::add_obstacle(grains_, obstacle, motion, first_id, container);
+  constexpr double immovable = std::numeric_limits<double>::infinity();
+  const Eigen::Index before = masses_.size(), all = grains_.ids.size();
+  masses_.conservativeResize(all);
+  masses_.tail(all - before).setConstant(immovable);
+  if (!with_forces_) return;
+  forces_.conservativeResize(3, all);
+  forces_.rightCols(all - before).setZero();
+  torques_.conservativeResize(3, all);
+  torques_.rightCols(all - before).setZero();
+  inertias_.conservativeResize(all);
+  inertias_.tail(all - before).setConstant(immovable);
+}
+
+pfv::Packing PfvGrainExchange::grains() const {
+  const Eigen::Index count = grain_count();
+  pfv::Packing packing;
+  new (&packing.ids) decltype(packing.ids)(grains_.ids.data(), count);
+  new (&packing.positions) decltype(packing.positions)(grains_.positions.data(), 3, count);
+  new (&packing.radii) decltype(packing.radii)(grains_.radii.data(), count);
+  return packing;
+}
+
 void PfvGrainExchange::use_mean_velocities(const PfvSnapshot& then, double elapsed, const Eigen::Vector3d& lengths) {
   std::size_t old = 0;
   for (Eigen::Index k = 0; k < grains_.ids.size(); ++k) {

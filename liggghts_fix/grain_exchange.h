@@ -8,6 +8,7 @@
 #include "rank_rows.h"
 
 #include "pfv/flow_model.hpp"
+#include "pfv/obstacle.hpp"
 #include "pfv/packing.hpp"
 #include "pfv/solve_interval.hpp"
 
@@ -38,7 +39,13 @@ class PfvGrainExchange : protected Pointers {
   /// been wrapped has the velocity of that image, where `lengths` are those of the cell then (0: not periodic).
   void use_mean_velocities(const PfvSnapshot& then, double elapsed, const Eigen::Vector3d& lengths);
 
-  pfv::Packing packing() const { return grains_.view(); }    ///< as gathered; rank 0
+  pfv::Packing packing() const { return grains_.view(); }    ///< as gathered, with what was added; rank 0
+  /// The spheres of an obstacle behind those that are there: rank 0.
+  void add(const pfv::Obstacle& obstacle, const pfv::ObstacleMotion& motion, std::int64_t first_id,
+           const pfv::Container& container);
+  /// The gathered grains alone; rank 0.
+  Eigen::Index grain_count() const { return static_cast<Eigen::Index>(order_.size()); }
+  pfv::Packing grains() const;
   /// Positions without the wrapping of periodic axes, m; rank 0.
   const Eigen::Matrix3Xd& unwrapped() const { return unwrapped_.cols() > 0 ? unwrapped_ : grains_.positions; }
   /// kg, infinite for a grain that no force moves; rank 0.

@@ -10,7 +10,8 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 7.0;
+constexpr double format_number = 8.0;
+constexpr double without_obstacles = 7.0;
 constexpr double without_counts = 6.0;      // of steps and solves
 constexpr double without_cell_rates = 5.0;  // nor these: of a periodic cell
 
@@ -66,13 +67,15 @@ std::vector<double> pack(const PfvRestartRecord& record) {
     data.push_back(one.time);
   }
   append(std::array<std::int64_t, 2>{record.taken.steps, record.taken.solves});
+  data.push_back(static_cast<double>(record.obstacles.size()));
+  append(record.obstacles);
   return data;
 }
 
 PfvRestartRecord unpack(const char* bytes) {
   Reader reader(bytes);
   const double found = reader.next();
-  if (found != format_number && found != without_counts && found != without_cell_rates)
+  if (found != format_number && found != without_obstacles && found != without_counts && found != without_cell_rates)
     throw pfv::InputError("the restart file holds this fix in form " +
                           std::to_string(static_cast<int>(found)) + " of another version, this one reads the "
                           "forms " + std::to_string(static_cast<int>(without_cell_rates)) + " to " +
@@ -100,10 +103,11 @@ PfvRestartRecord unpack(const char* bytes) {
     one.step = static_cast<std::int64_t>(reader.next());
     one.time = reader.next();
   }
-  if (found == format_number) {
+  if (found >= without_obstacles) {
     record.taken.steps = static_cast<std::int64_t>(reader.next());
     record.taken.solves = static_cast<std::int64_t>(reader.next());
   }
+  if (found == format_number) record.obstacles = reader.list<double>(reader.count());
   return record;
 }
 

@@ -22,6 +22,7 @@ struct PfvRestartRecord {
   PfvSnapshot last_grains;
   PfvTaken taken;
   std::vector<PfvWrittenStep> written;
+  std::vector<double> obstacles;  ///< PfvObstacles::record, or nothing
 };
 
 std::vector<double> pack(const PfvRestartRecord& record);

@@ -67,11 +67,12 @@ Deepest deepest_in(const pfv::Container& container, const std::vector<pfv::Trian
   return deepest;
 }
 
-std::string remedy(const pfv::Container& container) {
+std::string remedy(const pfv::Container& container, const PfvUnseenWall& wall) {
   if (container.any_periodic()) return "; a periodic cell has plane walls normal to its other axes alone";
-  return container.is_box ? "; take `container walls`, or a `container` with a face for this wall, if it bounds the fluid; a body "
-               "among the grains can be made of frozen spheres"
-             : "; a body among the grains can be made of frozen spheres";
+  const std::string obstacle = wall.surface.empty() ? "`obstacle mesh " + wall.id + "` makes it a body among the grains" : "";
+  if (!container.is_box) return obstacle.empty() ? "; give the container a face for it" : "; " + obstacle;
+  return "; take `container walls`, or a `container` with a face for this wall, if it bounds the fluid" +
+         (obstacle.empty() ? "" : "; " + obstacle);
 }
 
 }  // namespace
@@ -79,8 +80,9 @@ std::string remedy(const pfv::Container& container) {
 std::vector<PfvUnseenWall> walls_beside_the_faces(LAMMPS* lmp, int groupbit, const PfvSettings& settings) {
   std::vector<PfvUnseenWall> unseen;
   for (const PfvWall& wall : PfvFoundWalls(lmp, groupbit).walls()) {
-    const bool seen = std::any_of(settings.sources.begin(), settings.sources.end(),
-                                  [&](const PfvFaceSource& source) { return source.fix_id == wall.id; });
+    const auto is_this = [&](const auto& one) { return one.fix_id == wall.id; };
+    const bool seen = std::any_of(settings.sources.begin(), settings.sources.end(), is_this) ||
+                      std::any_of(settings.obstacles.begin(), settings.obstacles.end(), is_this);
     if (seen) continue;
     unseen.push_back({wall.id, {}, {}});
     if (wall.mesh) unseen.back().triangles = triangles_of(wall.mesh, lmp->world);
@@ -100,13 +102,13 @@ std::vector<std::string> warnings_of_unseen_walls(const std::vector<PfvUnseenWal
       const double part = part_beyond(wall.surface[0], container, packing);
       if (part < noticed) continue;
       text << "wall '" << wall.id << "' cuts off " << 100.0 * part << " % of what is taken as the fluid's room, where no grain "
-           << "can be and water flows without resistance" << remedy(container);
+           << "can be and water flows without resistance" << remedy(container, wall);
     } else {
       const Deepest deepest = deepest_in(container, wall.triangles);
       if (deepest.depth <= touching * packing.radii.mean()) continue;
       text << "mesh '" << wall.id << "' stands in the fluid, which does not see it: it reaches " << deepest.depth
            << " m into it at (" << deepest.place.transpose() << "); water flows through it, and it displaces none"
-           << remedy(container);
+           << remedy(container, wall);
     }
     warnings.push_back(text.str());
   }

@@ -310,6 +310,10 @@ void add_output_options(CLI::App& command, SolveArguments& arguments) {
                      "permeability in m2, velocity in m/s) for ParaView\n"
                      "(default: not written)")
       ->option_text("FILE.vtu")->group(group);
+  repeatable(command.add_option("--obstacle", arguments.obstacles,
+                                "a body among the grains, at rest: its surface as an STL file (m), text or binary"));
+  command.add_option("--obstacle-diameter", arguments.obstacle_diameter,
+                     "of the smallest spheres in its place, m (default: half the grains' mean diameter)");
   command.add_option("--culprits", arguments.culprits,
                      "where the packing cannot be solved, the spheres and places that\n"
                      "the error is about (default: not written)")
@@ -366,6 +370,19 @@ void add_solve_options(CLI::App& command, SolveArguments& arguments) {
     if (!option->get_option_text().empty()) option->type_name("VALUE");  // in parser's messages
 }
 
+namespace {
+
+void check_obstacles(const SolveRequest& request) {
+  if (request.obstacles.empty() && request.obstacle_diameter > 0.0)
+    throw InputError("--obstacle-diameter: there is no --obstacle FILE.stl that it is for");
+  if (!request.obstacles.empty() && request.container.any_periodic())
+    throw InputError("--obstacle takes no periodic box; give it walls");
+  if (!request.obstacles.empty() && request.settings.grid())
+    throw InputError("--obstacle: the model darcy_grid knows none; take the model pfv");
+}
+
+}  // namespace
+
 SolveRequest request_of(const SolveArguments& given) {
   SolveArguments arguments = given;
   SolveRequest request;
@@ -378,6 +395,10 @@ SolveRequest request_of(const SolveArguments& given) {
   request.container = container_of(arguments);
   request.settings = settings_of(arguments);
   if (arguments.time_step) request.time_step = positive("--time-step", *arguments.time_step);
+  request.obstacles = arguments.obstacles;
+  if (arguments.obstacle_diameter)
+    request.obstacle_diameter = positive("--obstacle-diameter", *arguments.obstacle_diameter);
+  check_obstacles(request);
   request.repeat = repeats_of(arguments);
   request.forces = arguments.forces;
   request.report = arguments.report;

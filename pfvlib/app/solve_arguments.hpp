@@ -20,8 +20,8 @@ namespace pfv::app {
 struct SolveArguments {
   std::string packing, snapshot = "last", length_unit = "m";
   bool at_rest = false;
-  std::optional<std::string> container;
-  std::vector<std::string> box, faces, patches, regions, points, periodic, tilt, gradient;
+  std::optional<std::string> container, obstacle_diameter;
+  std::vector<std::string> box, faces, patches, regions, points, periodic, tilt, gradient, obstacles;
   std::string wall = name_of(Wall::no_slip);
   std::map<std::string, std::vector<std::string>> settings;  ///< by the names of the table
   std::optional<std::string> time_step, repeat;
@@ -39,6 +39,8 @@ struct SolveRequest {
   std::shared_ptr<PackingFile> file;  ///< if it has been read for that
   Container container;
   Settings settings;
+  std::vector<std::string> obstacles;  ///< STL files
+  double obstacle_diameter = 0.0;      ///< m; 0: from the grains
   double time_step = 0.0;  ///< s; 0: none
   int repeat = 0;          ///< further steps on the kept network
   std::optional<std::string> forces, report, vtk, culprits;  ///< output files

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve_command.hpp"
 
+#include "solve_obstacles.hpp"
+
 #include "launch.hpp"
 #include "network/grains.hpp"
 #include "work/phase_clock.hpp"
@@ -141,8 +143,11 @@ void warn(const SolveRequest& request, const FlowModel& flow, const Facts& facts
 }
 
 void write_outputs(const SolveRequest& request, const FlowModel& flow, const DealtPacking& packing,
-                   const Report& report, const Ranks* ranks) {
-  if (request.forces) write_forces(*request.forces, packing.rows(), packing.forces_of_rows(flow.forces()), ranks);
+                   const Report& report, Eigen::Index obstacles, const Ranks* ranks) {
+  const Eigen::Index grains = packing.rows().size() - obstacles;
+  if (request.forces)
+    write_forces(*request.forces, first_spheres(packing.rows(), grains),
+                 first_forces(packing.forces_of_rows(flow.forces()), grains), ranks);
   const auto write = [&] {
     if (!speaks(ranks)) return;
     if (request.report) write_report(*request.report, report);
@@ -174,6 +179,9 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
   out << "inflow " << report.inflow << " m3/s, outflow " << report.outflow << " m3/s\n";
   if (!request.forces && !request.report && !request.vtk)
     for (const FaceResult& face : report.faces) out << "flux " << face.name << ' ' << face.flux << " m3/s\n";
+  for (const ObstacleResult& one : report.obstacles)
+    out << "obstacle " << one.name << ": " << one.spheres << " spheres, volume " << one.volume << " m3, force "
+        << one.force.transpose() << " N, moment " << one.moment.transpose() << " N m\n";
 }
 
 }  // namespace
@@ -182,6 +190,7 @@ namespace {
 
 void refuse_on_ranks(const SolveRequest& request) {
   if (request.settings.grid()) throw InputError("the model darcy_grid runs on one rank");
+  if (!request.obstacles.empty()) throw InputError("--obstacle: a body among the grains takes one rank; run without mpirun");
   if (request.vtk || request.culprits)
     throw InputError("--vtk and --culprits are written by one rank; run without mpirun for them");
 }
@@ -199,6 +208,9 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
   } else {
     read_rows();
   }
+  const Eigen::Index grains = read.ids.size();
+  const std::vector<StandingObstacle> obstacles = add_obstacles(request, read);
+  const Eigen::Index in_obstacles = read.ids.size() - grains;
   const DealtPacking dealt(std::move(read), ranks.get());
   const Packing packing = dealt.own();
   const double read_seconds = cpu_seconds() - start;
@@ -218,7 +230,8 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
   report.seconds.read = read_seconds;
   report.seconds.step = step.cpu;
   report.wall_seconds.step = step.wall;
-  write_outputs(request, flow, dealt, report, ranks.get());
+  report.obstacles = results_of(obstacles, request, flow.forces(), packing);
+  write_outputs(request, flow, dealt, report, in_obstacles, ranks.get());
   warn(request, flow, Facts(request, flow, packing, ranks.get()), report, warnings);
   write_summary(request, report, out);
 }

@@ -38,7 +38,7 @@ class Outputs(CommandTest):
                                        "permeability_tensor", "permeability_error",
                                        "degenerate_share", "outside_range", "force_sum", "solver",
                                        "ordering", "solver_made_of",
-                                       "conductance", "faces", "openings", "counts", "seconds", "wall_seconds"})
+                                       "conductance", "faces", "openings", "obstacles", "counts", "seconds", "wall_seconds"})
         self.assertIsNone(report["permeability_tensor"])  # periodic axes only
         for key in INTEGERS:
             self.assertIs(type(report[key]), int, key)

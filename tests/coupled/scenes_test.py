@@ -111,6 +111,9 @@ class Scenes(CoupledTest):
         self.accepted("bucket", "container walls" + TOP, 6, lambda top: 0.06 * 0.04 * top,
                       left_out=["mesh 'bucket'"], unseen=["mesh 'bucket' stands in the fluid, which does not see it"])
 
+    def test_bucket_as_an_obstacle(self):
+        self.accepted("bucket", "container walls obstacle mesh bucket" + TOP, 6, lambda top: 0.06 * 0.04 * top)
+
     def test_triaxial_with_six_servos(self):
         fluid = ("container walls face zlo pressure 0 face zhi pressure 0\n"
                  "print 'room $((f_xhi[10]-f_xlo[10])*(f_yhi[11]-f_ylo[11])*(f_zhi[12]-f_zlo[12]))'")

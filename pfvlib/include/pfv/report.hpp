@@ -26,6 +26,16 @@ struct OpeningResult {
   std::optional<double> pressure;  ///< Pa, mean of its pores; absent without a pore
 };
 
+/// A mesh that stands in the fluid (pfv/obstacle.hpp); filled in by the host that put it there.
+struct ObstacleResult {
+  std::string name;
+  std::int64_t spheres = 0;                      ///< in place of it, inside the box
+  double volume = 0.0, union_volume = 0.0;       ///< of the mesh's closed parts and of all spheres, m³
+  double recess = 0.0, protrusion = 0.0;         ///< m, the furthest that they stay behind it and stand out of it
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();  ///< N, N m about the centre
+};
+
 /// How often each piece of work was done since the Flow was made; nothing else was computed.
 struct Counts {
   std::int64_t triangulate = 0, order = 0, factor = 0, solve = 0, force_matrix = 0, volume_rate = 0;
@@ -81,6 +91,7 @@ struct Report {
   std::string solver_made_of;  ///< which code ordered, analysed, factored and solved
   std::vector<FaceResult> faces;
   std::vector<OpeningResult> openings;  ///< the patches, then the regions, in their order
+  std::vector<ObstacleResult> obstacles;
   Counts counts;
   Seconds seconds;
   WallSeconds wall_seconds;
@@ -162,6 +173,7 @@ void for_each_entry(const Report& report, const See& see) {
   see("conductance", report.conductance);
   see("faces", report.faces);
   see("openings", report.openings);
+  see("obstacles", report.obstacles);
   see("counts", report.counts);
   see("seconds", report.seconds);
   see("wall_seconds", report.wall_seconds);

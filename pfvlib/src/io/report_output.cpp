@@ -37,6 +37,21 @@ Json json_of(const std::vector<FaceResult>& faces) {
   return json;
 }
 
+Json json_of(const std::vector<ObstacleResult>& obstacles) {
+  Json list = Json::array();
+  for (const ObstacleResult& one : obstacles)
+    list.push_back({{"name", one.name},
+                    {"spheres", one.spheres},
+                    {"volume", one.volume},
+                    {"union_volume", one.union_volume},
+                    {"recess", one.recess},
+                    {"protrusion", one.protrusion},
+                    {"centre", json_of(one.centre)},
+                    {"force", json_of(one.force)},
+                    {"moment", json_of(one.moment)}});
+  return list;
+}
+
 Json json_of(const std::vector<OpeningResult>& openings) {
   Json json = Json::array();
   for (const OpeningResult& opening : openings)

@@ -121,7 +121,10 @@ Matrix3d wall_correction(const Container& container, const Spheres& spheres, int
   return parts.eigenvectors() * bounded.cwiseInverse().asDiagonal() * parts.eigenvectors().transpose();
 }
 
-/// The spheres in open water by themselves, or with all others of their bodies.
+/// The spheres in open water by themselves, or with all others of their bodies. A body of more spheres than this, an
+/// obstacle, keeps the drag of the network: that of its beads costs the cube of their number.
+constexpr std::size_t most_beads = 200;
+
 std::vector<Group> groups_of(const Spheres& spheres, const std::vector<int>& body, const std::vector<int>& open) {
   std::map<int, std::vector<int>> members;
   for (int k = 0; k < static_cast<int>(body.size()); ++k)
@@ -130,7 +133,7 @@ std::vector<Group> groups_of(const Spheres& spheres, const std::vector<int>& bod
   for (const int k : open) {
     if (body.empty() || body[k] < 0 || members[body[k]].size() == 1) {
       groups.push_back({{k}, {spheres.radii[k] * Matrix3d::Identity()}});
-    } else if (std::vector<int>& beads = members[body[k]]; !beads.empty()) {
+    } else if (std::vector<int>& beads = members[body[k]]; !beads.empty() && beads.size() <= most_beads) {
       groups.push_back({beads, drags_of_beads(spheres, beads)});
       beads.clear();  // taken
     }

@@ -16,9 +16,8 @@ struct ClosedPores {
   int joined = 0;    ///< cut off otherwise, at a body: they share the unknown of the pore behind their widest facet
 };
 
-/// Renumbers the unknowns. `body`: of each sphere, -1 for none.
-ClosedPores take_out_closed_pores(const PoreNetwork& network, const Throats& throats,
-                                  const std::vector<double>& conductances, const std::vector<int>& body,
-                                  Unknowns& unknowns);
+/// Renumbers the unknowns and closes the throats of enclosed pores. `body`: of each sphere, -1 for none.
+ClosedPores take_out_closed_pores(const PoreNetwork& network, const Throats& throats, const std::vector<int>& body,
+                                  std::vector<double>& conductances, Unknowns& unknowns);
 
 }  // namespace pfv

@@ -79,8 +79,8 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Probl
   fresh->unknowns = number_unknowns(fresh->network, fresh->boundaries, problem.container, share);
   if (share.ranks) fresh->rows = share_rows(fresh->unknowns, share);
   if (!fresh->grains.body.empty())
-    fresh->closed = take_out_closed_pores(fresh->network, fresh->throats, fresh->conductances.value,
-                                          fresh->grains.body, fresh->unknowns);
+    fresh->closed = take_out_closed_pores(fresh->network, fresh->throats, fresh->grains.body,
+                                          fresh->conductances.value, fresh->unknowns);
   for (const int pore : fresh->unknowns.enclosed_pores)
     fresh->throats.pore_volume[pore] = fresh->throats.pore_fluid_volume[pore] = 0.0;
   return fresh;

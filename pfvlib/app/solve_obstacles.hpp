@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solve_arguments.hpp"
+
+#include "pfv/obstacle.hpp"
+#include "pfv/report.hpp"
+
+#include <string>
+#include <vector>
+
+namespace pfv::app {
+
+/// What stands for the file of an `--obstacle`, as columns of the packing.
+struct StandingObstacle {
+  Obstacle obstacle;
+  Eigen::Index first, count;
+};
+
+/// Puts the spheres of each obstacle behind the grains, as far as they are in the container.
+std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, PackingArrays& packing);
+
+std::vector<ObstacleResult> results_of(const std::vector<StandingObstacle>& obstacles, const SolveRequest& request,
+                                       const Forces& forces, const Packing& packing);
+
+/// Of the first `count` spheres alone: the grains, in front of the obstacles.
+Packing first_spheres(const Packing& packing, Eigen::Index count);
+Forces first_forces(const Forces& forces, Eigen::Index count);
+
+}  // namespace pfv::app
