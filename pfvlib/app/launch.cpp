@@ -3,9 +3,11 @@
 
 #include "distributed/packing_parts.hpp"
 #include "parallel/mpi_session.hpp"
+#include "pfv/error.hpp"
 #include "pfv/mpi.hpp"
 
 #include <cstdlib>
+#include <string>
 #include <utility>
 
 namespace pfv::app {
@@ -13,6 +15,8 @@ namespace {
 
 /// What Open MPI, MPICH and those like it, and PMIx launchers tell their programs.
 bool is_launched() {
+  const char* wish = std::getenv("PFV_RANKS");
+  if (wish && std::string(wish) == "one") return false;
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
     if (std::getenv(name)) return true;
   return false;
@@ -29,6 +33,24 @@ std::shared_ptr<const Ranks> start() {
 std::shared_ptr<const Ranks> launched_ranks() {
   static const std::shared_ptr<const Ranks> ranks = start();
   return ranks;
+}
+
+namespace {
+
+constexpr const char* remedy =
+    ": under one mpirun they share one packing; for programs that each do something of their own set PFV_RANKS=one in their "
+    "environment";
+
+}  // namespace
+
+void refuse_unlike_arguments(const Ranks& ranks, const std::string& arguments) {
+  bool unlike = false;
+  for (const Ranks::Bytes& other : ranks.gather({arguments.begin(), arguments.end()}))
+    unlike = unlike || std::string(other.begin(), other.end()) != arguments;
+  const bool any_unlike = ranks.any(unlike);
+  ranks.together([&] {
+    if (any_unlike) throw InputError(std::string("the ranks have been given different arguments") + remedy);
+  });
 }
 
 bool speaks(const Ranks* ranks) { return !ranks || ranks->own() == 0; }
@@ -56,6 +78,10 @@ Forces DealtPacking::forces_of_rows(const Forces& forces) const {
 
 PackingArrays own_rows(PackingArrays all, const Ranks* ranks) {
   if (!ranks) return all;
+  const double rows = static_cast<double>(all.ids.size()), most = ranks->largest(rows), least = -ranks->largest(-rows);
+  ranks->together([&] {
+    if (most != least) throw InputError(std::string("the ranks have read packings of different sizes") + remedy);
+  });
   const Eigen::Index count = all.ids.size(), first = count * ranks->own() / ranks->count();
   const Eigen::Index size = count * (ranks->own() + 1) / ranks->count() - first;
   const auto columns = [&](const Eigen::Matrix3Xd& values) {

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace pfv {
 class PackingParts;
@@ -14,8 +15,11 @@ class PackingParts;
 
 namespace pfv::app {
 
-/// The ranks that mpirun has started; null for a program by itself, which starts no MPI.
+/// The ranks that mpirun has started; null for a program by itself, which starts no MPI, and where the environment has
+/// PFV_RANKS=one, as for programs that each do something of their own under one mpirun.
 std::shared_ptr<const Ranks> launched_ranks();
+/// Throws InputError on all ranks where they have not been given the same arguments. Collective.
+void refuse_unlike_arguments(const Ranks& ranks, const std::string& arguments);
 /// Whether this one writes files and talks.
 bool speaks(const Ranks* ranks);
 /// Ends all ranks where one has failed alone; returns where there is one only, or all know.
@@ -38,7 +42,8 @@ class DealtPacking {
   std::unique_ptr<PackingParts> parts_;
 };
 
-/// Of a file that each rank has read: its share of the rows.
+/// Of a file that each rank has read: its share of the rows. Throws InputError where they have not read the same number.
+/// Collective.
 PackingArrays own_rows(PackingArrays all, const Ranks* ranks);
 
 }  // namespace pfv::app

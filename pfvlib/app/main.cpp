@@ -11,9 +11,11 @@
 #include "time_step_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <iostream>
 #include <new>
 #include <string>
+#include <thread>
 
 namespace {
 
@@ -85,8 +87,9 @@ struct Commands {
 };
 
 /// One rank talks for all.
-void solve_on_ranks(pfv::app::SolveArguments arguments) {
+void solve_on_ranks(pfv::app::SolveArguments arguments, const std::string& words) {
   const std::shared_ptr<const pfv::Ranks> ranks = pfv::app::launched_ranks();
+  if (ranks) pfv::app::refuse_unlike_arguments(*ranks, words);
   if (std::vector<std::string>& solver = arguments.settings["solver"]; ranks && solver.empty()) solver = {"amg"};
   pfv::app::SolveRequest request;
   const auto read = [&] { request = pfv::app::request_of(arguments); };
@@ -98,7 +101,7 @@ void solve_on_ranks(pfv::app::SolveArguments arguments) {
 }
 
 /// Of the command that was parsed.
-int carry_out(const Commands& commands) {
+int carry_out(const Commands& commands, const std::string& words) {
   using namespace pfv::app;
   if (commands.selftest->parsed()) return selftest(std::cout) ? succeeded : failed;
   if (commands.convert->parsed())
@@ -110,7 +113,7 @@ int carry_out(const Commands& commands) {
   else if (commands.settings->parsed())
     commands.of_fix ? write_fix_syntax(std::cout) : write_settings(std::cout);
   else
-    solve_on_ranks(commands.solve_arguments);
+    solve_on_ranks(commands.solve_arguments, words);
   return succeeded;
 }
 
@@ -126,7 +129,9 @@ int run(int argc, char** argv) {
     const std::string command = chosen.empty() ? "pfv" : "pfv " + chosen.front()->get_name();
     return complain(bad_input, error.what() + (": see " + command + " --help"));
   }
-  return carry_out(commands);
+  std::string words;
+  for (int i = 1; i < argc; ++i) words += argv[i] + std::string(1, '\0');
+  return carry_out(commands, words);
 }
 
 }  // namespace
@@ -137,6 +142,8 @@ namespace {
 int complain_on_ranks(int status, const std::string& message) {
   const std::shared_ptr<const pfv::Ranks> ranks = pfv::app::launched_ranks();
   const bool alone = ranks && !ranks->failed_together();
+  // where all fail in the same way, the first speaks and ends the others before they do
+  if (alone && ranks->own() > 0) std::this_thread::sleep_for(std::chrono::seconds(1));
   if (alone || pfv::app::speaks(ranks.get())) complain(status, message);
   pfv::app::end_others(ranks.get(), status);
   return status;

@@ -126,6 +126,13 @@ void warn_of_empty_space(const FlowModel& flow, std::ostream& warnings) {
   if (warning) warnings << "pfv: warning: " << *warning << '\n';
 }
 
+/// Of a fluid whose density is known.
+void warn_of_inertia(const SolveRequest& request, const Report& report, std::ostream& warnings) {
+  if (request.settings.given.count("density") == 0 || !report.reynolds_largest || !(*report.reynolds_largest > 1.0)) return;
+  warnings << "pfv: warning: the Reynolds number of the throats reaches " << *report.reynolds_largest << " (mean "
+           << *report.reynolds_mean << "): above 1 the fluid's inertia, which this model leaves out, counts\n";
+}
+
 void warn(const SolveRequest& request, const FlowModel& flow, const Facts& facts, const Report& report,
           std::ostream& warnings) {
   const Counts& counts = report.counts;
@@ -134,6 +141,7 @@ void warn(const SolveRequest& request, const FlowModel& flow, const Facts& facts
   warn_of_size(facts, warnings);
   warn_of_empty_space(flow, warnings);
   warn_of_pinned(request, facts, report, warnings);
+  warn_of_inertia(request, report, warnings);
   if (counts.degenerate_throats > 0)
     warnings << "pfv: warning: " << counts.degenerate_throats
              << " throats without positive volume, surface or area: a rule sets their"
@@ -201,17 +209,17 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
            std::ostream& warnings) {
   const double start = cpu_seconds();
   PackingArrays read;
-  const auto read_rows = [&] { read = own_rows(packing_of(request, warnings), ranks.get()); };
+  const auto read_file = [&] { read = packing_of(request, warnings); };
   if (ranks) {
     ranks->together([&] { refuse_on_ranks(request); });
-    ranks->together(read_rows);
+    ranks->together(read_file);
   } else {
-    read_rows();
+    read_file();
   }
   const Eigen::Index grains = read.ids.size();
   const std::vector<StandingObstacle> obstacles = add_obstacles(request, read);
   const Eigen::Index in_obstacles = read.ids.size() - grains;
-  const DealtPacking dealt(std::move(read), ranks.get());
+  const DealtPacking dealt(own_rows(std::move(read), ranks.get()), ranks.get());
   const Packing packing = dealt.own();
   const double read_seconds = cpu_seconds() - start;
 
@@ -227,9 +235,13 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
   const StepTimes step = repeat_steps(flow, packing, request);
 
   Report report = flow.report();
-  report.seconds.read = read_seconds;
+  report.seconds.read = ranks ? ranks->sum(read_seconds) : read_seconds;
   report.seconds.step = step.cpu;
   report.wall_seconds.step = step.wall;
+  if (ranks && step.cpu) {
+    report.seconds.step = ranks->sum(*step.cpu);
+    report.wall_seconds.step = ranks->largest(*step.wall);
+  }
   report.obstacles = results_of(obstacles, request, flow.forces(), packing);
   write_outputs(request, flow, dealt, report, in_obstacles, ranks.get());
   warn(request, flow, Facts(request, flow, packing, ranks.get()), report, warnings);

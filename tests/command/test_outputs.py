@@ -32,18 +32,26 @@ class Outputs(CommandTest):
         for component in value:
             self.assert_number(component)
 
+    def test_a_flow_with_inertia_is_warned_of_where_the_density_is_given(self):
+        fast = ["--face", "zlo:pressure=0", "--face", "zhi:pressure=1e6", "--viscosity", "1e-3"]
+        self.assertEqual(self.solve(*fast).stderr, "")
+        warned = self.solve(*fast, "--density", "1000").stderr
+        self.assert_one_line(warned)
+        self.assertIn("the Reynolds number of the throats reaches", warned)
+
     def test_report_has_the_documented_keys_and_types(self):
         report = self.report(*THROUGH_FLOW)
         self.assertEqual(set(report), {*INTEGERS, *NUMBERS, "version", "model", "permeability",
                                        "permeability_tensor", "permeability_error",
-                                       "degenerate_share", "outside_range", "force_sum", "solver",
+                                       "degenerate_share", "outside_range", "reynolds_largest", "reynolds_mean",
+                                       "force_sum", "solver",
                                        "ordering", "solver_made_of",
                                        "conductance", "faces", "openings", "obstacles", "counts", "seconds", "wall_seconds"})
         self.assertIsNone(report["permeability_tensor"])  # periodic axes only
         for key in INTEGERS:
             self.assertIs(type(report[key]), int, key)
         self.assertEqual(report["outside_range"], [])
-        for key in (*NUMBERS, "permeability", "permeability_error", "degenerate_share"):
+        for key in (*NUMBERS, "permeability", "permeability_error", "degenerate_share", "reynolds_largest", "reynolds_mean"):
             self.assert_number(report[key])
         for key in ("solver", "ordering", "solver_made_of", "conductance", "version", "model"):
             self.assertTrue(report[key])

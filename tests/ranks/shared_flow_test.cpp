@@ -75,6 +75,8 @@ void expect_reports_agree(const pfv::Report& found, const pfv::Report& expected)
     EXPECT_EQ(found.outside_range, expected.outside_range);
   }
   expect_near(*found.fluid_volume, *expected.fluid_volume, 1e-12, 0.0, "fluid");
+  expect_near(*found.reynolds_largest, *expected.reynolds_largest, 1e-7, 1e-3, "largest Reynolds number");
+  expect_near(*found.reynolds_mean, *expected.reynolds_mean, 1e-7, 1e-3, "mean Reynolds number");
   EXPECT_LT(std::abs(found.mass_error), 1e-9);
   EXPECT_LT(found.force_balance_error, 1e-12);
   ASSERT_EQ(found.faces.size(), expected.faces.size());
@@ -167,6 +169,47 @@ TEST(SharedFlow, FluxesAndPatchesAndAWell) {
   box.patches.push_back({pfv::Face::ylo, {0.5, 0.5001, 0.5, 0.5001}, pfv::Boundary::pressure(0.1)});
   box.regions.push_back({{0.4, 0.4, 0.4}, {0.4001, 0.4001, 0.4001}, pfv::Boundary::flux(2e-4)});
   expect_as_on_one_rank({moving(pfv::dense_packing(400)), box});
+}
+
+/// Two pores are as near to the place of the patch as each other.
+TEST(SharedFlow, APatchBetweenPoresOfALattice) {
+  pfv::Box box;
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  box.patches.push_back({pfv::Face::zlo, {0.374, 0.376, 0.374, 0.376}, pfv::Boundary::pressure(1.0)});
+  const pfv::PackingArrays lattice = support::lattice(support::Lattice::sc, 4, 0.95);
+  const pfv::PackingArrays part = part_of(lattice, own_columns(lattice, Deal::by_place));
+  pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
+  one.evaluate(lattice.view());
+  all.evaluate(part.view());
+  EXPECT_EQ(all.report().openings[0].pores, 1);
+  EXPECT_NEAR(all.report().inflow / one.report().inflow, 1.0, 1e-9);  // by symmetry, whichever it is
+}
+
+TEST(SharedFlow, RegionsOfManyPoresThatTouchImposedPressures) {
+  pfv::Box box;
+  box[pfv::Face::zlo].boundary = pfv::Boundary::pressure(0.0);
+  box.regions.push_back({{0.0, 0.0, 1e-5}, {1.0, 1.0, 0.6}, pfv::Boundary::flux(1.0)});
+  expect_as_on_one_rank({pfv::dense_packing(300), box});
+}
+
+TEST(SharedFlow, ARegionThatTakesAllPoresHasNoWayOut) {
+  pfv::Box box;
+  box[pfv::Face::zlo].boundary = pfv::Boundary::pressure(0.0);
+  box[pfv::Face::zlo].boundary = pfv::Boundary::sealed();
+  box.patches.push_back({pfv::Face::zhi, {0.5, 0.5001, 0.5, 0.5001}, pfv::Boundary::pressure(0.0)});
+  box.regions.push_back({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, pfv::Boundary::flux(1.0)});
+  const pfv::PackingArrays packing = pfv::dense_packing(100);
+  const pfv::PackingArrays part = part_of(packing, own_columns(packing, Deal::by_place));
+  pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
+  EXPECT_THROW(one.evaluate(packing.view()), pfv::InputError);
+  EXPECT_THROW(all.evaluate(part.view()), pfv::InputError);
+}
+
+TEST(SharedFlow, GrainsInOnePlane) {
+  pfv::PackingArrays packing = support::random_packing(60, 0.02, 0.03, 8);
+  packing.positions.row(2).setConstant(0.5);
+  for (Eigen::Index k = 0; k < packing.ids.size(); ++k) packing.positions(0, k) = (0.5 + static_cast<double>(k)) / 60.0;
+  expect_as_on_one_rank({packing, seepage()});
 }
 
 TEST(SharedFlow, ACompressibleFluidBetweenSealedWalls) {
@@ -275,6 +318,12 @@ TEST(SharedFlow, WhatRanksCannotDoTogetherIsRefused) {
   pfv::Flow flow(seepage(), {}, tight(), world());
   flow.evaluate(part.view());
   EXPECT_THROW(flow.fields(), pfv::InputError);
+  pfv::Fluid water;
+  water.bulk_modulus = 1e3;
+  pfv::Flow pressed(seepage(), water, tight(), world());
+  pressed.step(part.view(), 1e-3);
+  pressed.rebuild();
+  EXPECT_THROW(pressed.step(part.view(), 1e-3), pfv::InputError);
   EXPECT_THROW(flow.time_step_limit(Eigen::VectorXd::Ones(part.ids.size())), pfv::InputError);
   EXPECT_THROW(flow.advance(part.view(), 1e-3, {pfv::Coupling::staged, nullptr, true, 1.0, {}}), pfv::InputError);
 }

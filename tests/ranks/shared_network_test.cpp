@@ -112,6 +112,9 @@ void expect_same(const pfv::PackingArrays& packing, const pfv::Container& contai
   }
   EXPECT_EQ(unknown, 0);
   EXPECT_EQ(different, 0);
+  for (const auto& [i, j] : shared.network->network.throat_pores)
+    if (shared.network->share.own_pores[i] || shared.network->share.own_pores[j])
+      ASSERT_TRUE(shared.network->share.whole_pores[i] && shared.network->share.whole_pores[j]);
   EXPECT_EQ(world()->sum(static_cast<double>(found.size())), static_cast<double>(expected.size()));
   EXPECT_EQ(pfv::hidden_spheres(*shared.network), pfv::hidden_spheres(*whole.network));
   EXPECT_EQ(pfv::merged_pores(*shared.network), pfv::merged_pores(*whole.network));
@@ -138,6 +141,17 @@ TEST(SharedNetwork, IsThatOfOneRankForUnlikeSpheresAndVoids) {
 TEST(SharedNetwork, IsThatOfOneRankForALatticeWhosePoresMerge) {
   for (const auto kind : {support::Lattice::sc, support::Lattice::fcc})
     expect_same(support::lattice(kind, 5), pfv::Box{}, Deal::by_place);
+}
+
+/// The hole that a grain leaves in such a lattice is one pore of twelve grains, whose own neighbours are far.
+TEST(SharedNetwork, IsThatOfOneRankForPoresOfManyGrains) {
+  const pfv::PackingArrays lattice = support::lattice(support::Lattice::fcc, 4, 0.93);
+  for (const int gone : {37, 101, 150}) {
+    std::vector<int> kept;
+    for (int k = 0; k < static_cast<int>(lattice.ids.size()); ++k)
+      if (k != gone) kept.push_back(k);
+    for (const Deal deal : {Deal::by_place, Deal::at_random}) expect_same(numbered(part_of(lattice, kept)), pfv::Box{}, deal);
+  }
 }
 
 TEST(SharedNetwork, IsThatOfOneRankForAFewGrainsInMuchWater) {

@@ -84,6 +84,9 @@ struct Report {
   std::optional<double> permeability_error;
   std::optional<double> degenerate_share;  ///< of the dissipation, in throats that a rule set
   std::vector<std::string> outside_range;  ///< why the estimate may not hold; none: it was checked
+  /// rho u d / mu of the throats, with the velocity over their whole area: largest, and mean weighted with the power
+  /// lost. The model is that of Stokes flow, below 1 or so. Absent for darcy_grid.
+  std::optional<double> reynolds_largest, reynolds_mean;
   Eigen::Vector3d force_sum = Eigen::Vector3d::Zero();
   double force_balance_error = 0;
   double residual = 0;
@@ -140,17 +143,9 @@ void for_each_entry(const WallSeconds& seconds, const See& see) {
   see("waited", seconds.waited);
   see("step", seconds.step);
 }
+/// Of a Report, what tells of the flow.
 template <class See>
-void for_each_entry(const Report& report, const See& see) {
-  see("model", report.model);
-  see("spheres", report.spheres);
-  see("hidden", report.hidden);
-  see("outside", report.outside);
-  see("pores", report.pores);
-  see("unknowns", report.unknowns);
-  see("porosity", report.porosity);
-  see("pore_volume", report.pore_volume);
-  see("solid_area", report.solid_area);
+void for_each_flow_entry(const Report& report, const See& see) {
   see("inflow", report.inflow);
   see("outflow", report.outflow);
   see("volume_rate_sum", report.volume_rate_sum);
@@ -164,6 +159,21 @@ void for_each_entry(const Report& report, const See& see) {
   see("permeability_error", report.permeability_error);
   see("degenerate_share", report.degenerate_share);
   see("outside_range", report.outside_range);
+  see("reynolds_largest", report.reynolds_largest);
+  see("reynolds_mean", report.reynolds_mean);
+}
+template <class See>
+void for_each_entry(const Report& report, const See& see) {
+  see("model", report.model);
+  see("spheres", report.spheres);
+  see("hidden", report.hidden);
+  see("outside", report.outside);
+  see("pores", report.pores);
+  see("unknowns", report.unknowns);
+  see("porosity", report.porosity);
+  see("pore_volume", report.pore_volume);
+  see("solid_area", report.solid_area);
+  for_each_flow_entry(report, see);
   see("force_sum", report.force_sum);
   see("force_balance_error", report.force_balance_error);
   see("residual", report.residual);

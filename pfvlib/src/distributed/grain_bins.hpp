@@ -16,8 +16,16 @@ class GrainBins {
   GrainBins(const Eigen::Matrix3Xd& places, const std::vector<int>& columns, const Bounds& bounds) : lower_(bounds.lower) {
     const Eigen::Vector3d edges = (bounds.upper - bounds.lower).cwiseMax(0.0);
     const double most = std::max(1.0, static_cast<double>(columns.size()));
-    size_ = std::max(std::cbrt(edges.prod() / most), edges.maxCoeff() / most);
-    if (!(size_ > 0.0)) size_ = 1.0;
+    // along edges that have a length: grains may lie in a plane or a row
+    const double thin = 1e-3 * edges.maxCoeff();
+    double space = 1.0;
+    int dimensions = 0;
+    for (const double edge : edges)
+      if (edge > thin) {
+        space *= edge;
+        ++dimensions;
+      }
+    size_ = dimensions > 0 ? std::pow(space / most, 1.0 / dimensions) : 1.0;
     for (int axis = 0; axis < 3; ++axis) count_[axis] = static_cast<int>(edges[axis] / size_) + 1;
     begin_.assign(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
     for (const int k : columns) ++begin_[bin_of(places.col(k)) + 1];

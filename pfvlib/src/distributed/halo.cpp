@@ -17,8 +17,8 @@ namespace {
 
 /// What a grain is on its way to another rank: id, position, radius, velocity, angular velocity.
 constexpr std::size_t record_size = 11;
-/// Width of the first halo in mean distances of the grains: in dense packings few cells reach further.
-constexpr double first_width = 4.0;
+/// Width of the first halo in mean distances of the grains: in dense packings hardly a cell reaches further.
+constexpr double first_width = 5.5;
 constexpr std::size_t most_answers = 4;
 
 std::vector<Bounds> bounds_in(const std::vector<Ranks::Bytes>& messages) {
@@ -117,6 +117,22 @@ void Halo::take_own(const Packing& own) {
   owner_.assign(static_cast<std::size_t>(n), ranks_->own());
 }
 
+namespace {
+
+/// Of the grains where there are any: the container may reach far beyond a bed, m.
+double mean_distance(const std::vector<Bounds>& places, const Eigen::Vector3d& edges, const Halo::Totals& totals) {
+  Eigen::Vector3d lower = edges, upper = Eigen::Vector3d::Zero();
+  for (const Bounds& place : places)
+    if (!place.is_empty()) {
+      lower = lower.cwiseMin(place.lower);
+      upper = upper.cwiseMax(place.upper);
+    }
+  const Eigen::Vector3d filled = (upper - lower).cwiseMax(0.0).array() + 2.0 * totals.mean_radius;
+  return std::cbrt(filled.cwiseMin(edges).prod() / std::max(1.0, totals.active));
+}
+
+}  // namespace
+
 void Halo::share_places(const Container& container) {
   Bounds place;
   if (!active_.empty()) {
@@ -124,8 +140,8 @@ void Halo::share_places(const Container& container) {
     place = {inside.rowwise().minCoeff() - origin_, inside.rowwise().maxCoeff() - origin_};
   }
   places_ = bounds_in(ranks_->gather(bytes_of(place)));
-  const double width = first_width * std::cbrt(volume_of(container) / std::max(1.0, totals_.active));
   const Eigen::Vector3d edges = container.upper - container.lower;
+  const double width = first_width * mean_distance(places_, edges, totals_);
   constexpr double everywhere = std::numeric_limits<double>::infinity();
   known_ = place;
   for (int axis = 0; axis < 3 && !place.is_empty(); ++axis) {

@@ -28,7 +28,7 @@ struct Bounds {
 /// The grains of this rank and, after them, those of others that it knows: its ghosts.
 class Halo {
  public:
-  /// Begins with the grains of others up to `width` (m) from its own. `own`: this rank's part of a packing, whose
+  /// Begins with the grains of others up to some five mean distances from its own. `own`: this rank's part of a packing, whose
   /// columns come first. Throws InputError on all ranks alike. Collective.
   Halo(const Packing& own, const Container& container, OutsideGrains outside, const Ranks& ranks);
 

@@ -17,7 +17,7 @@ using CellVertices = std::array<Vertex, 4>;
 struct Wanted {
   std::vector<char> cells;
   std::vector<char> whole_cells;    ///< of these, those whose pores have all their throats
-  std::vector<char> whole_spheres;  ///< own ones and those that share a cell with one
+  std::vector<char> whole_spheres;  ///< own ones and those of pores with one
 };
 
 template <class Is>
@@ -32,33 +32,37 @@ void complete_pores(const std::vector<int>& first, std::vector<char>& cells) {
   for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = cells[first[c]];
 }
 
+/// Own pores, all that stands around their spheres, and one layer of cells more.
 Wanted wanted_cells(const Triangulation& triangulation, const std::vector<int>& first, const std::vector<char>& is_own) {
   const std::size_t cells = triangulation.vertices.size();
-  Wanted wanted{std::vector<char>(cells, 0), std::vector<char>(cells, 0), is_own};
-  for (const CellVertices& cell : triangulation.vertices)
-    if (any_sphere(cell, [&](Vertex v) { return is_own[v]; }))
-      for (const Vertex v : cell)
-        if (!is_wall(v)) wanted.whole_spheres[v] = 1;
+  Wanted wanted{{}, std::vector<char>(cells, 0), is_own};
+  std::vector<char>& whole = wanted.whole_cells;
+  const auto take_cells_at = [&](const std::vector<char>& spheres) {
+    for (std::size_t c = 0; c < cells; ++c)
+      whole[c] = whole[c] || any_sphere(triangulation.vertices[c], [&](Vertex v) { return spheres[v]; });
+    complete_pores(first, whole);
+  };
+  take_cells_at(is_own);
   for (std::size_t c = 0; c < cells; ++c)
-    wanted.whole_cells[c] = any_sphere(triangulation.vertices[c], [&](Vertex v) { return wanted.whole_spheres[v]; });
-  complete_pores(first, wanted.whole_cells);
-  wanted.cells = wanted.whole_cells;
+    for (const Vertex v : triangulation.vertices[c])
+      if (whole[c] && !is_wall(v)) wanted.whole_spheres[v] = 1;
+  take_cells_at(wanted.whole_spheres);
+  wanted.cells = whole;
   for (std::size_t c = 0; c < cells; ++c)
-    if (wanted.whole_cells[c])
+    if (whole[c])
       for (const int neighbour : triangulation.neighbours[c])
         if (neighbour >= 0) wanted.cells[neighbour] = 1;
   complete_pores(first, wanted.cells);
   return wanted;
 }
 
-/// A round wall's cells are found with planes that stand a little off it.
-constexpr double allowance_at_round_walls = 0.1;
+/// A round wall's cells are found with planes that stand a little off it: their balls are those of other centres.
+constexpr double allowance_at_round_walls = 0.5;
 
 /// What to ask for: cells whose ball leaves the place where all grains are known.
 std::vector<Halo::Query> queries_of(const Cells& cells, const std::vector<char>& wanted, const Spheres& spheres,
                                     const Halo& halo) {
   const double widest = halo.totals().largest_radius;
-  const bool round = std::any_of(spheres.walls.begin(), spheres.walls.end(), [](const WallSurface& w) { return !w.is_plane(); });
   const Bounds& known = halo.known();
   std::vector<Halo::Query> queries;
   for (std::size_t c = 0; c < wanted.size(); ++c) {
@@ -68,7 +72,9 @@ std::vector<Halo::Query> queries_of(const Cells& cells, const std::vector<char>&
     for (const Vertex v : cells.triangulation.vertices[c])
       if (!is_wall(v))
         power = std::max(power, (centre - spheres.centres.col(v)).squaredNorm() - spheres.radii[v] * spheres.radii[v]);
-    if (round) power = std::pow((1.0 + allowance_at_round_walls) * std::sqrt(power) + allowance_at_round_walls * widest, 2);
+    const auto& cell = cells.triangulation.vertices[c];
+    if (std::any_of(cell.begin(), cell.end(), [&](Vertex v) { return is_wall(v) && !spheres.wall(v).is_plane(); }))
+      power = std::pow((1.0 + allowance_at_round_walls) * std::sqrt(power) + allowance_at_round_walls * widest, 2);
     const double reach = std::sqrt(power + widest * widest) * (1.0 + 1e-9);
     const bool inside = (centre.array() - reach >= known.lower.array()).all() &&
                         (centre.array() + reach <= known.upper.array()).all();

@@ -48,7 +48,7 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
   };
   BuiltNetwork& built =
       keeper.update(packing, problem(),
-                    {dt, commit, fluid.bulk_modulus.has_value(), solution}, work, taken_up);
+                    {dt, commit, memory.pressures.size() > 0, solution}, work, taken_up);
   if (factor_pressures(built, problem(), dt, work)) schemes.forget_factor();
   work.counts.open_water = built.operators.open_water ? open_water_count(built) : 0;
   double pinned = 0.0;
@@ -220,6 +220,8 @@ FlowState Flow::state() const {
 }
 
 void Flow::set_state(FlowState state) {
+  if (parts_->ranks && parts_->fluid.bulk_modulus)
+    throw InputError("the state of a compressible fluid cannot be set on several ranks: run it on one rank");
   FluidMemory& memory = parts_->memory;
   memory.time = state.time;
   parts_->keeper.restore(state.strain, state.retriangulations);

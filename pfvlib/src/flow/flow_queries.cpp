@@ -153,6 +153,7 @@ void add_up_times(Report& report, const Ranks& ranks) {
                         &seconds.solve, &seconds.forces, &seconds.total})
     *phase = ranks.sum(*phase);
   report.wall_seconds.total = ranks.largest(report.wall_seconds.total);
+  report.wall_seconds.waited = ranks.largest(report.wall_seconds.waited);
   report.ranks = ranks.count();
 }
 

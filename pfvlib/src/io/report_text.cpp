@@ -47,6 +47,14 @@ std::string permeability(const Report& done) {
   return text;
 }
 
+std::string reynolds(const Report& done) {
+  if (!done.reynolds_largest || !(*done.reynolds_largest > 0.0)) return {};
+  std::string text = line("Reynolds number of the throats: largest %.3g  mean %.3g", *done.reynolds_largest, *done.reynolds_mean);
+  if (*done.reynolds_mean > 1.0) text += " (above 1 the fluid's inertia, which is left out, counts)";
+  else if (*done.reynolds_largest > 1.0) text += " (above 1 somewhere: there the fluid's inertia, which is left out, counts)";
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string summary_of(const Report& done) {
@@ -57,6 +65,7 @@ std::string summary_of(const Report& done) {
                whole(done.unknowns));
   text += line("residual %.3g  mass error %.3g  force balance error %.3g\n", done.residual,
                done.mass_error, done.force_balance_error);
+  text += reynolds(done);
   text += "solver " + done.solver + ": " + done.solver_made_of + "\n";
   if (done.counts.background > 0)
     text += line("built in the background %lld  waited for them %.4g s\n",

@@ -29,10 +29,20 @@ bool within(const InFace& p) {
          (p.place.array() <= p.upper.array() + slack).all();
 }
 
-/// Whether the nearest of all ranks is here, and none of any is inside.
-bool takes_nearest(const Share& share, bool any_inside, double nearest_distance) {
-  return !share.any(any_inside) && share.largest(-nearest_distance) == -nearest_distance &&
-         std::isfinite(nearest_distance);
+/// Which pores take a boundary that has none inside: `nearest` (-1: none here), or of several ranks that of the lowest
+/// rank of those that are equally near; its ghosts are told.
+std::vector<int> takers(const Share& share, int pores, bool any_inside, int nearest, double distance) {
+  if (share.any(any_inside)) return {};
+  if (!share.ranks) return nearest < 0 ? std::vector<int>{} : std::vector<int>{nearest};
+  const bool least = -share.largest(nearest < 0 ? -std::numeric_limits<double>::infinity() : -distance) == distance &&
+                     nearest >= 0;
+  Eigen::VectorXd marks = Eigen::VectorXd::Zero(pores);
+  if (share.is_lowest(least)) marks[nearest] = 1.0;
+  share.pores.refresh(*share.ranks, marks);
+  std::vector<int> taken;
+  for (int pore = 0; pore < pores; ++pore)
+    if (marks[pore] > 0.0) taken.push_back(pore);
+  return taken;
 }
 
 void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
@@ -40,7 +50,7 @@ void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNet
   const ContainerPatch& patch = container.patches[number];
   int axis = 0;
   container.faces[patch.face].surface.normal.cwiseAbs().maxCoeff(&axis);
-  PoreBoundaries::Contact* nearest = nullptr;
+  int nearest = -1;
   double nearest_distance = std::numeric_limits<double>::infinity();
   bool any = false;
   for (PoreBoundaries::Contact& contact : contacts) {
@@ -51,12 +61,14 @@ void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNet
       any = true;
     }
     const double distance = (place.place - 0.5 * (place.lower + place.upper)).norm();
-    if (distance < nearest_distance) {
+    if (share.owns_pore(contact.pore) && distance < nearest_distance) {
       nearest_distance = distance;
-      nearest = &contact;
+      nearest = contact.pore;
     }
   }
-  if (takes_nearest(share, any, nearest_distance)) nearest->boundary = patch_number(container, number);
+  for (const int pore : takers(share, network.pores(), any, nearest, nearest_distance))
+    for (PoreBoundaries::Contact& contact : contacts)
+      if (contact.pore == pore && contact.face == patch.face) contact.boundary = patch_number(container, number);
 }
 
 /// The region of each pore, or -1.
@@ -78,12 +90,13 @@ std::vector<int> regions_of_pores(const PoreNetwork& network, const Container& c
         any = true;
       }
       const double distance = (place - middle).norm();
-      if (distance < nearest_distance) {
+      if (share.owns_pore(pore) && distance < nearest_distance) {
         nearest_distance = distance;
         nearest = pore;
       }
     }
-    if (takes_nearest(share, any, nearest_distance)) region_of[nearest] = static_cast<int>(number);
+    for (const int pore : takers(share, network.pores(), any, nearest, nearest_distance))
+      region_of[pore] = static_cast<int>(number);
   }
   return region_of;
 }

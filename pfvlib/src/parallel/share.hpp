@@ -27,6 +27,10 @@ struct Share {
   double sum(double part) const { return ranks ? ranks->sum(part) : part; }
   double largest(double part) const { return ranks ? ranks->largest(part) : part; }
   bool any(bool part) const { return ranks ? ranks->any(part) : part; }
+  /// Whether this is the lowest rank of those that are.
+  bool is_lowest(bool is) const {
+    return ranks ? ranks->largest(is ? -ranks->own() : -ranks->count()) == -ranks->own() : is;
+  }
   /// Does what each rank does alone; see Ranks::together.
   void together(const std::function<void()>& part) const {
     if (ranks) ranks->together(part);

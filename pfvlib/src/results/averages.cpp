@@ -148,9 +148,7 @@ double shared_pressure_at(const BuiltNetwork& built, const Solution& solution, c
     pressure = solution.pressures[pore];
     if (share.whole_pores[pore]) outside = std::max(0.0, distance_outside(built.network, built.vertices, relative, cell));
   }
-  const bool nearest = -share.largest(-outside) == outside;
-  const double rank = -share.ranks->own();
-  const bool tells = share.largest(nearest ? rank : -share.ranks->count()) == rank;
+  const bool tells = share.is_lowest(-share.largest(-outside) == outside);
   return share.sum(tells ? pressure : 0.0);
 }
 
@@ -222,11 +220,12 @@ void find_largest(const BuiltNetwork& built, double sphere, EmptySpace& empty) {
     if (built.share.owns_pore(pore) && (found < 0 || volumes[pore] > volumes[found])) found = pore;
   const double here = found < 0 ? -std::numeric_limits<double>::infinity() : volumes[found];
   const double largest = built.share.largest(here);
-  Eigen::VectorXd place = Eigen::VectorXd::Zero(4);  // and how many have one as large
-  if (found >= 0 && here == largest) place << built.network.pore_centres.col(found) + built.network.origin, 1.0;
-  built.share.add(place);
   empty.largest = largest / sphere;
-  if (place[3] > 0.0) empty.place = place.head<3>() / place[3];
+  Eigen::VectorXd place = Eigen::VectorXd::Zero(3);
+  if (built.share.is_lowest(found >= 0 && here == largest))
+    place = built.network.pore_centres.col(found) + built.network.origin;
+  built.share.add(place);
+  empty.place = place;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/network_report.hpp"
 
+#include "physics/reynolds_numbers.hpp"
 #include "problem/solver_abilities.hpp"
 
 #include <algorithm>
@@ -67,6 +68,11 @@ Report network_report(BuiltNetwork& built, const Problem& problem, const Solutio
   const BoundarySums sums = boundary_sums(built, solution, balance);
   const Totals totals = totals_of(sums);
   add_balances(report, built, solution, balance, totals);
+  const ReynoldsNumbers reynolds =
+      reynolds_numbers(built.network, built.throats, built.vertices, built.conductances, balance.throat_fluxes,
+                       problem.fluid.density, problem.fluid.viscosity, built.share);
+  report.reynolds_largest = reynolds.largest;
+  report.reynolds_mean = reynolds.mean;
   add_permeability(report, built, problem, solution, totals, balance.throat_fluxes, solves);
   report.solver = built.kept.solver->name();
   report.ordering = name_of(resolved(options.solver, options.ordering));

@@ -53,6 +53,7 @@ std::optional<double> permeability(const BuiltNetwork& built, double viscosity,
       if (contact.face == (*faces)[i] && built.share.owns_pore(contact.pore))
         here = solution.relative_pressures[contact.pore];
     pressures[i] = built.share.largest(here);
+    if (!std::isfinite(pressures[i])) return {};
   }
   return permeability_of(solution.container, *faces, viscosity, totals, pressures);
 }

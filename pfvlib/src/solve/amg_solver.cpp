@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -46,7 +48,15 @@ void AmgSolver::factor_values(const SymmetricMatrix& matrix) {
   held_ = row_sums(matrix_);
   refuse_lost_pressures();
   last_.forget(ranks());
-  multigrid_.build(matrix_, rows_.get());
+  std::string problem;
+  try {
+    multigrid_.build(matrix_, rows_.get());
+  } catch (const std::exception& error) {
+    problem = error.what();
+  }
+  together([&] {
+    if (!problem.empty()) throw std::runtime_error(problem);
+  });
   if (rows_) solve_for_borders();
 }
 
@@ -54,8 +64,14 @@ void AmgSolver::factor_values(const SymmetricMatrix& matrix) {
 void AmgSolver::take_own_rows(const SymmetricMatrix& matrix) {
   borders_.take(matrix, *rows_);
   matrix_.value = matrix.value;
+  std::vector<char> is_border(static_cast<std::size_t>(size()), 0);
+  for (const int border : rows_->borders)
+    if (border >= 0) is_border[border] = 1;
   together([&] {
     for (int row = 0; row < size(); ++row) {
+      for (int k = matrix.row_begin[row]; k < matrix.row_begin[row + 1] && rows_->own[row]; ++k)
+        if (rows_->number[matrix.column[k]] < 0 && !is_border[matrix.column[k]])
+          fail("a pore of this rank leads to one whose owner is not known: please report this; a run on one rank avoids it");
       if (!rows_->own[row])
         std::fill(matrix_.value.begin() + matrix_.row_begin[row], matrix_.value.begin() + matrix_.row_begin[row + 1], 0.0);
       else if (!(matrix.value[diagonal_[row]] > 0.0))
@@ -73,7 +89,10 @@ void AmgSolver::solve_for_borders() {
   for (int s = 0; s < borders_.count(); ++s)
     if (largest(borders_.column(s)) > 0.0) iterate(borders_.column(s), solutions[s]);
   tolerance_ = tolerance;
-  borders_.take_solutions(std::move(solutions), *rows_);
+  const bool determined = borders_.take_solutions(std::move(solutions), *rows_);
+  together([&] {
+    if (!determined) fail("nothing determines the pressure of a flux boundary: impose a pressure that its pores reach");
+  });
   last_.forget(ranks());
 }
 
@@ -81,13 +100,16 @@ void AmgSolver::solve_for_borders() {
 /// beside what either of its pores conducts holds none.
 void AmgSolver::refuse_lost_pressures() {
   DisjointSets groups(size());
-  for (int row = 0; row < size(); ++row)
-    for (int k = matrix_.row_begin[row]; k < matrix_.row_begin[row + 1]; ++k)
-      if (std::abs(matrix_.value[k]) > 4.0 * epsilon * matrix_.value[diagonal_[row]])
-        groups.join(row, matrix_.column[k]);
   Eigen::VectorXd is_held = Eigen::VectorXd::Zero(size());
   for (int row = 0; row < size(); ++row)
-    if (held_[row] != 0.0) is_held[groups.find(row)] = 1.0;
+    for (int k = matrix_.row_begin[row]; k < matrix_.row_begin[row + 1]; ++k) {
+      if (!(std::abs(matrix_.value[k]) > 4.0 * epsilon * matrix_.value[diagonal_[row]])) continue;
+      // a border is taken out of the matrix, and holds what it is joined to
+      if (rows_ && rows_->number[matrix_.column[k]] < 0) is_held[row] = 1.0;
+      else groups.join(row, matrix_.column[k]);
+    }
+  for (int row = 0; row < size(); ++row)
+    if (held_[row] != 0.0 || is_held[row] != 0.0) is_held[groups.find(row)] = 1.0;
   if (rows_) spread_largest(*rows_, groups, is_held);
   together([&] {
     for (int row = 0; row < size(); ++row)

@@ -30,11 +30,17 @@ Eigen::VectorXd Borders::products(const Eigen::VectorXd& v, const RowShare& rows
   return sums;
 }
 
-void Borders::take_solutions(std::vector<Eigen::VectorXd> solutions, const RowShare& rows) {
+bool Borders::take_solutions(std::vector<Eigen::VectorXd> solutions, const RowShare& rows) {
+  constexpr double rounding = 1e-12;  // of what a border conducts in all
   solutions_ = std::move(solutions);
   Eigen::MatrixXd own = among_;
   for (int s = 0; s < count(); ++s) own.col(s) -= products(solutions_[s], rows);
+  if (!(among_.diagonal().array() > 0.0).all() || !own.allFinite()) return false;
+  const Eigen::VectorXd scale = among_.diagonal().cwiseSqrt().cwiseInverse();
+  factor_.setThreshold(rounding);
+  if (!factor_.compute(scale.asDiagonal() * own * scale.asDiagonal()).isInvertible()) return false;
   factor_.compute(own);
+  return true;
 }
 
 Eigen::VectorXd Borders::take_out(Eigen::VectorXd& b, const RowShare& rows) const {

@@ -20,8 +20,8 @@ class Borders {
   int count() const { return static_cast<int>(columns_.size()); }
   /// c of each, in own rows.
   const Eigen::VectorXd& column(int border) const { return columns_[border]; }
-  /// Takes z of each. Collective.
-  void take_solutions(std::vector<Eigen::VectorXd> solutions, const RowShare& rows);
+  /// Takes z of each; false where nothing determines the pressure of one. Collective.
+  bool take_solutions(std::vector<Eigen::VectorXd> solutions, const RowShare& rows);
   /// What b has for each border; these entries become 0. Collective.
   Eigen::VectorXd take_out(Eigen::VectorXd& b, const RowShare& rows) const;
   /// Makes the x of a former solve the y that it was made from.

@@ -112,10 +112,8 @@ namespace {
 /// A flux counts once, whatever ranks have pores at its boundary.
 void leave_to_lowest_rank(std::vector<int>& fed_by, const Share& share) {
   if (!share.ranks) return;
-  for (int& pore : fed_by) {
-    const double own = -share.ranks->own();
-    if (share.largest(pore >= 0 ? own : -share.ranks->count()) != own) pore = -1;
-  }
+  for (int& pore : fed_by)
+    if (!share.is_lowest(pore >= 0)) pore = -1;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace pfv {
 
@@ -83,6 +84,38 @@ void spread_largest(const RowShare& rows, DisjointSets& sets, Eigen::VectorXd& v
   }
 }
 
+namespace {
+
+std::vector<double> sorted_once(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+std::vector<double> labels_of_all(std::vector<double> here, const Ranks& ranks) {
+  here = sorted_once(std::move(here));
+  Ranks::Bytes bytes;
+  append(bytes, here.data(), here.size());
+  std::vector<double> labels;
+  for (const Ranks::Bytes& part : ranks.gather(bytes))
+    for (const double value : values_in<double>(part)) labels.push_back(value);
+  return sorted_once(std::move(labels));
+}
+
+/// Sets of nothing but a border are held by it, on the lowest rank that has it.
+void hold_borders(const RowShare& rows, const std::vector<double>& labels, const std::vector<double>& of_border,
+                  std::vector<Isolated>& isolated) {
+  const double own = -rows.ranks->own();
+  for (std::size_t b = 0; b < of_border.size(); ++b) {
+    const bool lowest = rows.ranks->largest(rows.borders[b] >= 0 ? own : -rows.ranks->count()) == own;
+    const auto found = std::lower_bound(labels.begin(), labels.end(), of_border[b]);
+    if (lowest && found != labels.end() && *found == of_border[b])
+      isolated[static_cast<std::size_t>(found - labels.begin())].unknown = rows.borders[b];
+  }
+}
+
+}  // namespace
+
 std::vector<Isolated> find_isolated(const PoreNetwork& network, const std::vector<double>& conductances,
                                     const Unknowns& unknowns, const Share& share, const RowShare& rows) {
   DisjointSets sets(unknowns.count);
@@ -95,24 +128,25 @@ std::vector<Isolated> find_isolated(const PoreNetwork& network, const std::vecto
     if ((i < 0) != (j < 0)) anchored[std::max(i, j)] = 1.0;
   }
   spread_largest(rows, sets, anchored);
-  // a set is known by the least number in it
+  // a set is known by the least number in it; borders come after all rows
   constexpr double none = -std::numeric_limits<double>::infinity();
   Eigen::VectorXd label = Eigen::VectorXd::Constant(unknowns.count, none);
   for (int u = 0; u < unknowns.count; ++u)
     if (rows.own[u]) label[u] = -static_cast<double>(rows.number[u]);
+  std::vector<double> label_of_border;
+  for (std::size_t b = 0; b < rows.borders.size(); ++b) {
+    label_of_border.push_back(-static_cast<double>(rows.total) - static_cast<double>(b));
+    if (rows.borders[b] >= 0) label[rows.borders[b]] = label_of_border[b];
+  }
   spread_largest(rows, sets, label);
   const auto is_isolated = [&](std::size_t pore) {
     const int u = unknowns.of_pore[pore];
-    return u >= 0 && share.own_pores[pore] && anchored[u] == 0.0 && label[u] != none;
+    return u >= 0 && share.own_pores[pore] && anchored[u] == 0.0;
   };
-  Ranks::Bytes bytes;
+  std::vector<double> here;
   for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore)
-    if (is_isolated(pore)) append(bytes, &label[unknowns.of_pore[pore]], 1);
-  std::vector<double> labels;
-  for (const Ranks::Bytes& part : rows.ranks->gather(bytes))
-    for (const double value : values_in<double>(part)) labels.push_back(value);
-  std::sort(labels.begin(), labels.end());
-  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    if (is_isolated(pore)) here.push_back(label[unknowns.of_pore[pore]]);
+  const std::vector<double> labels = labels_of_all(std::move(here), *rows.ranks);
   std::vector<Isolated> isolated(labels.size(), Isolated{{}, -1, 0.0});
   for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore) {
     if (!is_isolated(pore)) continue;
@@ -121,12 +155,17 @@ std::vector<Isolated> find_isolated(const PoreNetwork& network, const std::vecto
     set.pores.push_back(static_cast<int>(pore));
     if (rows.own[u] && static_cast<double>(rows.number[u]) == -label[u]) set.unknown = u;
   }
+  hold_borders(rows, labels, label_of_border, isolated);
   return isolated;
 }
 
 double relative_residual(const SymmetricMatrix& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& b,
                          const RowShare& rows) {
   const Eigen::VectorXd r = b - multiply(matrix, x);
+  Eigen::VectorXd at_borders = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(rows.borders.size()));  // parts
+  for (std::size_t i = 0; i < rows.borders.size(); ++i)
+    if (rows.borders[i] >= 0) at_borders.segment<2>(2 * static_cast<Eigen::Index>(i)) << r[rows.borders[i]], b[rows.borders[i]];
+  rows.ranks->add(at_borders.data(), static_cast<std::size_t>(at_borders.size()));
   double squares[2] = {0.0, 0.0};
   for (int u = 0; u < matrix.size(); ++u) {
     if (!rows.own[u]) continue;
@@ -134,6 +173,7 @@ double relative_residual(const SymmetricMatrix& matrix, const Eigen::VectorXd& x
     squares[1] += b[u] * b[u];
   }
   rows.ranks->add(squares, 2);
+  for (Eigen::Index i = 0; i < at_borders.size(); ++i) squares[i % 2] += at_borders[i] * at_borders[i];
   return squares[1] > 0.0 ? std::sqrt(squares[0] / squares[1]) : 0.0;
 }
 

@@ -58,7 +58,7 @@ double raised_by_wrapping(const BuiltNetwork& old, int before, const BuiltNetwor
 Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values,
                                   const BuiltNetwork& now) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(now.network.pores());
-  if (!now.share.ranks && (old.network.cells() == 0 || now.network.pores() == 0)) return values;
+  if (old.network.cells() == 0 || now.network.pores() == 0) return values;
   // a cell that survives keeps its pressure: its dual vertex need not lie in it, so its place is no
   // guide to it
   const std::vector<int> survivors = surviving_cells(old, now);
@@ -80,17 +80,13 @@ Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd
         (now.network.origin + now.network.pore_centres.col(p) - old.network.origin)
             .cwiseMax(0.0)
             .cwiseMin(old.vertices.edges);
-    if (old.network.cells() == 0) continue;
     cell = locate(old.network, old.vertices, place, cell);
     values[p] = old_values[old.network.cell_pore[cell]];
   }
   // the sum of V^f p is what the storage term conserves (thesis eq. 4.8 with compressibility)
   const Eigen::VectorXd before = storage_volumes(old.throats);
   const Eigen::VectorXd after = storage_volumes(now.throats);
-  const double missing = now.share.sum(before.dot(old_values) - after.dot(values));
-  const double volume = now.share.sum(after.sum());
-  if (volume > 0.0) values.array() += missing / volume;
-  if (now.share.ranks) now.share.pores.refresh(*now.share.ranks, values);
+  values.array() += (before.dot(old_values) - after.dot(values)) / after.sum();
   return values;
 }
 

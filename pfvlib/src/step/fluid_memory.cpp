@@ -20,6 +20,14 @@ double compressed_in(const BuiltNetwork& built, const Fluid& fluid,
 void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
                      const Fluid& fluid) {
   const int pores = now.network.pores();
+  if (now.share.ranks) {
+    now.share.together([&] {
+      if (memory.pressed)
+        throw InputError("a compressible fluid cannot be carried over to a new network on several ranks: run it on one rank");
+    });
+    memory.pressures.setZero(fluid.bulk_modulus ? pores : 0);
+    return;
+  }
   if (!memory.restored.empty() && static_cast<int>(memory.restored.size()) != pores)
     throw InputError("the state that was set has " + std::to_string(memory.restored.size()) +
                      " pore pressures, and the network of this packing has " + std::to_string(pores) +
@@ -96,6 +104,7 @@ void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid
     memory.account.came_in += solution.dt * built.share.sum(built.kept.storage.dot(solution.pressures -
                                                                                    solution.previous_pressures));
   if (fluid.bulk_modulus) memory.pressures = solution.pressures;
+  memory.pressed = fluid.bulk_modulus.has_value();
 }
 
 double fluid_missing(const FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid,

@@ -14,6 +14,7 @@ struct FluidMemory {
   double time = 0.0;  ///< s, that was advanced
   /// Of the present pores at the last step, Pa; none but for a compressible fluid.
   Eigen::VectorXd pressures;
+  bool pressed = false;  ///< those of a step, on all ranks alike
   std::vector<double> restored;  ///< pressures of a restart, for the network that the next packing gives
   FluidAccount account;
   double volume_debt = 0.0;  ///< what the box has grown by beyond the rates of implicit steps, m³

@@ -70,8 +70,7 @@ double mean_imposed(const BuiltNetwork& built, const Eigen::VectorXd& pressures)
       ++count;
     }
   if (share.ranks) {  // of the lowest rank that has one
-    const double rank = -share.ranks->own();
-    const bool is_first = share.largest(count > 0.0 ? rank : -share.ranks->count()) == rank;
+    const bool is_first = share.is_lowest(count > 0.0);
     first = share.sum(is_first ? first : 0.0);
   }
   for (const int pore : built.unknowns.imposed_pores)
