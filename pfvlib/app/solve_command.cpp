@@ -192,15 +192,21 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
         << one.force.transpose() << " N, moment " << one.moment.transpose() << " N m\n";
 }
 
-}  // namespace
-
-namespace {
-
 void refuse_on_ranks(const SolveRequest& request) {
   if (request.settings.grid()) throw InputError("the model darcy_grid runs on one rank");
   if (!request.obstacles.empty()) throw InputError("--obstacle: a body among the grains takes one rank; run without mpirun");
   if (request.vtk || request.culprits)
     throw InputError("--vtk and --culprits are written by one rank; run without mpirun for them");
+}
+
+/// CPU time of all ranks, wall time of the slowest.
+void add_times(Report& report, double read_seconds, const StepTimes& step, const Ranks* ranks) {
+  report.seconds.read = ranks ? ranks->sum(read_seconds) : read_seconds;
+  report.seconds.step = step.cpu;
+  report.wall_seconds.step = step.wall;
+  if (!ranks || !step.cpu) return;
+  report.seconds.step = ranks->sum(*step.cpu);
+  report.wall_seconds.step = ranks->largest(*step.wall);
 }
 
 }  // namespace
@@ -235,13 +241,7 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
   const StepTimes step = repeat_steps(flow, packing, request);
 
   Report report = flow.report();
-  report.seconds.read = ranks ? ranks->sum(read_seconds) : read_seconds;
-  report.seconds.step = step.cpu;
-  report.wall_seconds.step = step.wall;
-  if (ranks && step.cpu) {
-    report.seconds.step = ranks->sum(*step.cpu);
-    report.wall_seconds.step = ranks->largest(*step.wall);
-  }
+  add_times(report, read_seconds, step, ranks.get());
   report.obstacles = results_of(obstacles, request, flow.forces(), packing);
   write_outputs(request, flow, dealt, report, in_obstacles, ranks.get());
   warn(request, flow, Facts(request, flow, packing, ranks.get()), report, warnings);

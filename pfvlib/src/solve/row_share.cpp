@@ -86,6 +86,21 @@ void spread_largest(const RowShare& rows, DisjointSets& sets, Eigen::VectorXd& v
 
 namespace {
 
+/// 1 where open throats lead to an imposed pressure, on whatever rank; joins what they join here.
+Eigen::VectorXd anchored_unknowns(const PoreNetwork& network, const std::vector<double>& conductances,
+                                  const Unknowns& unknowns, const Share& share, const RowShare& rows, DisjointSets& sets) {
+  Eigen::VectorXd anchored = Eigen::VectorXd::Zero(unknowns.count);
+  for (int t = 0; t < network.throats(); ++t) {
+    const auto [p, q] = network.throat_pores[t];
+    if (conductances[t] <= 0.0 || !(share.own_pores[p] || share.own_pores[q])) continue;
+    const int i = unknowns.of_pore[p], j = unknowns.of_pore[q];
+    if (i >= 0 && j >= 0) sets.join(i, j);
+    if ((i < 0) != (j < 0)) anchored[std::max(i, j)] = 1.0;
+  }
+  spread_largest(rows, sets, anchored);
+  return anchored;
+}
+
 std::vector<double> sorted_once(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -119,15 +134,7 @@ void hold_borders(const RowShare& rows, const std::vector<double>& labels, const
 std::vector<Isolated> find_isolated(const PoreNetwork& network, const std::vector<double>& conductances,
                                     const Unknowns& unknowns, const Share& share, const RowShare& rows) {
   DisjointSets sets(unknowns.count);
-  Eigen::VectorXd anchored = Eigen::VectorXd::Zero(unknowns.count);
-  for (int t = 0; t < network.throats(); ++t) {
-    const auto [p, q] = network.throat_pores[t];
-    if (conductances[t] <= 0.0 || !(share.own_pores[p] || share.own_pores[q])) continue;
-    const int i = unknowns.of_pore[p], j = unknowns.of_pore[q];
-    if (i >= 0 && j >= 0) sets.join(i, j);
-    if ((i < 0) != (j < 0)) anchored[std::max(i, j)] = 1.0;
-  }
-  spread_largest(rows, sets, anchored);
+  const Eigen::VectorXd anchored = anchored_unknowns(network, conductances, unknowns, share, rows, sets);
   // a set is known by the least number in it; borders come after all rows
   constexpr double none = -std::numeric_limits<double>::infinity();
   Eigen::VectorXd label = Eigen::VectorXd::Constant(unknowns.count, none);
