@@ -2,13 +2,16 @@
 #include "launch.hpp"
 
 #include "distributed/packing_parts.hpp"
+#include "distributed/sphere_records.hpp"
 #include "parallel/mpi_session.hpp"
 #include "pfv/error.hpp"
 #include "pfv/mpi.hpp"
 
 #include <cstdlib>
+#include <numeric>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace pfv::app {
 namespace {
@@ -84,16 +87,9 @@ PackingArrays own_rows(PackingArrays all, const Ranks* ranks) {
   });
   const Eigen::Index count = all.ids.size(), first = count * ranks->own() / ranks->count();
   const Eigen::Index size = count * (ranks->own() + 1) / ranks->count() - first;
-  const auto columns = [&](const Eigen::Matrix3Xd& values) {
-    return values.cols() > 0 ? Eigen::Matrix3Xd(values.middleCols(first, size)) : Eigen::Matrix3Xd(3, 0);
-  };
-  return {Packing::Ids(all.ids.segment(first, size)),
-          columns(all.positions),
-          Eigen::VectorXd(all.radii.segment(first, size)),
-          columns(all.velocities),
-          columns(all.angular_velocities),
-          all.displaced_volumes.size() > 0 ? Eigen::VectorXd(all.displaced_volumes.segment(first, size)) : Eigen::VectorXd(),
-          all.bodies.size() > 0 ? Eigen::VectorXi(all.bodies.segment(first, size)) : Eigen::VectorXi()};
+  std::vector<int> own(static_cast<std::size_t>(size));
+  std::iota(own.begin(), own.end(), static_cast<int>(first));
+  return columns_of(all, own);
 }
 
 }  // namespace pfv::app

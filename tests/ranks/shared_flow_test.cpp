@@ -123,7 +123,9 @@ void expect_as_on_one_rank(const Case& what) {
   const Difference forces = difference_of(found.total, expected.total, columns);
   EXPECT_LT(forces.rms, 1e-9);
   EXPECT_LT(forces.worst, 1e-7);
-  if (what.options.torques) EXPECT_LT(difference_of(found.torque, expected.torque, columns).rms, 1e-9);
+  if (what.options.torques) {
+    EXPECT_LT(difference_of(found.torque, expected.torque, columns).rms, 1e-9);
+  }
   const double pressure = expected.sphere_pressure.cwiseAbs().maxCoeff();
   for (std::size_t i = 0; i < columns.size(); ++i)
     EXPECT_NEAR(found.sphere_pressure[static_cast<Eigen::Index>(i)], expected.sphere_pressure[columns[i]], 1e-9 * pressure);

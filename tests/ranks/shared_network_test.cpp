@@ -113,8 +113,9 @@ void expect_same(const pfv::PackingArrays& packing, const pfv::Container& contai
   EXPECT_EQ(unknown, 0);
   EXPECT_EQ(different, 0);
   for (const auto& [i, j] : shared.network->network.throat_pores)
-    if (shared.network->share.own_pores[i] || shared.network->share.own_pores[j])
+    if (shared.network->share.own_pores[i] || shared.network->share.own_pores[j]) {
       ASSERT_TRUE(shared.network->share.whole_pores[i] && shared.network->share.whole_pores[j]);
+    }
   EXPECT_EQ(world()->sum(static_cast<double>(found.size())), static_cast<double>(expected.size()));
   EXPECT_EQ(pfv::hidden_spheres(*shared.network), pfv::hidden_spheres(*whole.network));
   EXPECT_EQ(pfv::merged_pores(*shared.network), pfv::merged_pores(*whole.network));

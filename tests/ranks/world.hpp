@@ -2,6 +2,7 @@
 #pragma once
 
 #include "distributed/packing_parts.hpp"
+#include "distributed/sphere_records.hpp"
 #include "parallel/ranks.hpp"
 #include "pfv/packing.hpp"
 #include "support/packings.hpp"
@@ -33,11 +34,7 @@ inline std::vector<int> own_columns(const pfv::PackingArrays& packing, Deal deal
 }
 
 inline pfv::PackingArrays part_of(const pfv::PackingArrays& packing, const std::vector<int>& columns) {
-  const auto of = [&](const Eigen::Matrix3Xd& values) {
-    return values.cols() > 0 ? Eigen::Matrix3Xd(values(Eigen::all, columns)) : Eigen::Matrix3Xd(3, 0);
-  };
-  return {pfv::Packing::Ids(packing.ids(columns)), of(packing.positions), Eigen::VectorXd(packing.radii(columns)),
-          of(packing.velocities), of(packing.angular_velocities), {}, {}};
+  return pfv::columns_of(packing, columns);
 }
 
 /// Velocities and spins drawn at random, m/s and rad/s.

@@ -111,7 +111,9 @@ TEST(Obstacles, ClosedMeshesHaveTheirVolumeAndNoSphereStandsOut) {
       const pfv::Obstacle found = pfv::obstacle_of_mesh(mesh, diameter, "body ");
       EXPECT_EQ(found.solids, 1);
       EXPECT_EQ(found.sheets, 0);
-      if (volume > 0.0) EXPECT_NEAR(found.volume, volume, 1e-12);
+      if (volume > 0.0) {
+        EXPECT_NEAR(found.volume, volume, 1e-12);
+      }
       EXPECT_NEAR(found.union_volume / found.volume, 1.0, 1e-3);
       EXPECT_LT(found.protrusion, 0.1 * diameter);
       EXPECT_LT(found.recess, 0.6 * diameter);  // at the corners of the block

@@ -2,7 +2,6 @@
 #include "distributed/halo.hpp"
 
 #include "distributed/grain_bins.hpp"
-#include "geometry/pi.hpp"
 #include "pfv/error.hpp"
 
 #include <algorithm>
@@ -15,8 +14,6 @@ namespace pfv {
 
 namespace {
 
-/// What a grain is on its way to another rank: id, position, radius, velocity, angular velocity.
-constexpr std::size_t record_size = 11;
 /// Width of the first halo in mean distances of the grains: in dense packings hardly a cell reaches further.
 constexpr double first_width = 5.5;
 constexpr std::size_t most_answers = 4;
@@ -35,18 +32,6 @@ Ranks::Bytes bytes_of(const Bounds& bounds) {
   append(bytes, bounds.lower.data(), 3);
   append(bytes, bounds.upper.data(), 3);
   return bytes;
-}
-
-double id_as_double(std::int64_t id) {
-  double value;
-  std::memcpy(&value, &id, sizeof value);
-  return value;
-}
-
-std::int64_t id_of(double value) {
-  std::int64_t id;
-  std::memcpy(&id, &value, sizeof id);
-  return id;
 }
 
 }  // namespace
@@ -97,11 +82,7 @@ void Halo::refuse_shared_ids(const Packing& own) const {
 }
 
 void Halo::take_own(const Packing& own) {
-  // all have what any has, so that ghosts bring theirs
-  Eigen::Vector3d has(own.velocities.cols() > 0, own.angular_velocities.cols() > 0, own.displaced_volumes.size() > 0);
-  ranks_->take_largest(has.data(), 3);
-  have_velocities_ = has[0] > 0.0;
-  have_spins_ = has[1] > 0.0;
+  arrays_ = arrays_of_all(own, *ranks_);
   const Eigen::Index n = own.size();
   const auto columns = [&](bool wanted, const auto& values) {
     return values.cols() > 0 ? Eigen::Matrix3Xd(values) : Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, wanted ? n : 0));
@@ -109,9 +90,9 @@ void Halo::take_own(const Packing& own) {
   seen_.ids = own.ids;
   seen_.positions = own.positions;
   seen_.radii = own.radii;
-  seen_.velocities = columns(have_velocities_, own.velocities);
-  seen_.angular_velocities = columns(have_spins_, own.angular_velocities);
-  seen_.displaced_volumes.resize(has[2] > 0.0 ? n : 0);
+  seen_.velocities = columns(arrays_.velocities, own.velocities);
+  seen_.angular_velocities = columns(arrays_.spins, own.angular_velocities);
+  seen_.displaced_volumes.resize(arrays_.displaced ? n : 0);
   for (Eigen::Index k = 0; k < seen_.displaced_volumes.size(); ++k)
     seen_.displaced_volumes[k] = displaced_volume(own, k);
   owner_.assign(static_cast<std::size_t>(n), ranks_->own());
@@ -160,46 +141,22 @@ void Halo::share_places(const Container& container) {
 /// Tells others of own grains, and takes in what they tell.
 void Halo::lend(const Lists& columns) {
   std::vector<Ranks::Bytes> to(ranks_->count());
-  std::vector<double> record(record_size, 0.0);
+  const Packing seen = seen_.view();
   for (int r = 0; r < ranks_->count(); ++r)
     for (const int k : columns[r]) {
-      record[0] = id_as_double(seen_.ids[k]);
-      record[4] = seen_.radii[k];
-      for (int i = 0; i < 3; ++i) {
-        record[1 + i] = seen_.positions(i, k);
-        if (seen_.velocities.cols() > 0) record[5 + i] = seen_.velocities(i, k);
-        if (seen_.angular_velocities.cols() > 0) record[8 + i] = seen_.angular_velocities(i, k);
-      }
-      append(to[r], record.data(), record_size);
+      append_sphere(to[r], seen, k);
       lent_[r].push_back(k);
     }
   const std::vector<Ranks::Bytes> from = ranks_->hand_over(to);
   for (int r = 0; r < ranks_->count(); ++r)
-    if (r != ranks_->own() && !from[r].empty()) append_ghosts(r, values_in<double>(from[r]));
+    if (r != ranks_->own() && !from[r].empty()) append_ghosts(r, from[r]);
 }
 
-void Halo::append_ghosts(int rank, const std::vector<double>& records) {
-  const auto more = static_cast<Eigen::Index>(records.size() / record_size);
-  const Eigen::Index before = seen_.ids.size(), n = before + more;
-  const Eigen::Map<const Eigen::MatrixXd> values(records.data(), record_size, more);
-  seen_.ids.conservativeResize(n);
-  seen_.positions.conservativeResize(3, n);
-  seen_.radii.conservativeResize(n);
-  seen_.positions.rightCols(more) = values.middleRows<3>(1);
-  seen_.radii.tail(more) = values.row(4);
-  if (have_velocities_) {
-    seen_.velocities.conservativeResize(3, n);
-    seen_.velocities.rightCols(more) = values.middleRows<3>(5);
-  }
-  if (have_spins_) {
-    seen_.angular_velocities.conservativeResize(3, n);
-    seen_.angular_velocities.rightCols(more) = values.middleRows<3>(8);
-  }
-  if (seen_.displaced_volumes.size() > 0) seen_.displaced_volumes.conservativeResize(n);
-  for (Eigen::Index k = 0; k < more; ++k) {
-    const Eigen::Index column = before + k;
-    seen_.ids[column] = id_of(values(0, k));
-    if (seen_.displaced_volumes.size() > 0) seen_.displaced_volumes[column] = 4.0 / 3.0 * pi * std::pow(seen_.radii[column], 3);
+void Halo::append_ghosts(int rank, const Ranks::Bytes& bytes) {
+  const Eigen::Index before = seen_.ids.size(), n = before + spheres_in(bytes);
+  resize(seen_, arrays_, n);
+  take_spheres(seen_, bytes, before);
+  for (Eigen::Index column = before; column < n; ++column) {
     owner_.push_back(rank);
     borrowed_[rank].push_back(static_cast<int>(column));
   }
@@ -268,12 +225,7 @@ void Halo::keep(const std::vector<char>& wanted) {
       columns.push_back(column);
     }
   borrowed_ = std::move(borrowed);
-  const auto of = [&](const Eigen::Matrix3Xd& values) {
-    return values.cols() > 0 ? Eigen::Matrix3Xd(values(Eigen::all, columns)) : Eigen::Matrix3Xd(3, 0);
-  };
-  seen_ = {Packing::Ids(seen_.ids(columns)), of(seen_.positions), Eigen::VectorXd(seen_.radii(columns)), of(seen_.velocities),
-           of(seen_.angular_velocities),
-           seen_.displaced_volumes.size() > 0 ? Eigen::VectorXd(seen_.displaced_volumes(columns)) : Eigen::VectorXd(), {}};
+  seen_ = columns_of(seen_, columns);
   std::vector<int> owner;
   for (const int column : columns) owner.push_back(owner_[column]);
   owner_ = std::move(owner);

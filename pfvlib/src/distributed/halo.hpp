@@ -2,6 +2,7 @@
 #pragma once
 
 #include "parallel/exchange.hpp"
+#include "distributed/sphere_records.hpp"
 #include "network/grains.hpp"
 #include "pfv/container.hpp"
 #include "pfv/options.hpp"
@@ -72,7 +73,7 @@ class Halo {
   void take_own(const Packing& own);
   void share_places(const Container& container);
   void lend(const Lists& columns);
-  void append_ghosts(int rank, const std::vector<double>& records);
+  void append_ghosts(int rank, const Ranks::Bytes& bytes);
   std::vector<int> answers(const std::vector<Query>& queries, int asker) const;
 
   const Ranks* ranks_;
@@ -80,7 +81,7 @@ class Halo {
   Eigen::Vector3d origin_;
   Totals totals_;
   PackingArrays seen_;
-  bool have_velocities_ = false, have_spins_ = false;  ///< on any rank
+  SphereArrays arrays_;
   std::vector<int> owner_;   ///< of each column
   std::vector<int> active_;  ///< own columns within the container
   Lists lent_, borrowed_;    ///< of each rank: own columns; columns of ghosts

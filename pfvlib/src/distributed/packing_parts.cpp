@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "distributed/packing_parts.hpp"
 
-#include "network/grains.hpp"
+#include "distributed/sphere_records.hpp"
 #include "pfv/error.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <limits>
 #include <string>
 
@@ -124,70 +122,21 @@ PackingParts::PackingParts(const Packing& rows, const Ranks& ranks)
   deal(rows);
 }
 
-namespace {
-
-constexpr std::size_t record = 12;  // id, position, radius, velocity, spin, displaced volume
-
-/// Which of the optional arrays any rank has.
-struct Has {
-  bool velocities, spins, displaced;
-};
-
-Has has_any(const Packing& rows, const Ranks& ranks) {
-  Eigen::Vector3d has(rows.velocities.cols() > 0, rows.angular_velocities.cols() > 0, rows.displaced_volumes.size() > 0);
-  ranks.take_largest(has.data(), 3);
-  return {has[0] > 0.0, has[1] > 0.0, has[2] > 0.0};
-}
-
-void append_sphere(Ranks::Bytes& bytes, const Packing& rows, int k) {
-  std::array<double, record> values{};
-  std::memcpy(values.data(), rows.ids.data() + k, sizeof(double));
-  const auto put = [&](std::size_t place, const auto& columns) {
-    for (int i = 0; i < 3 && columns.cols() > 0; ++i) values[place + static_cast<std::size_t>(i)] = columns(i, k);
-  };
-  put(1, rows.positions);
-  values[4] = rows.radii[k];
-  put(5, rows.velocities);
-  put(8, rows.angular_velocities);
-  values[11] = displaced_volume(rows, k);
-  append(bytes, values.data(), record);
-}
-
-/// `values`: records one after the other, from column `first` on.
-void take_spheres(PackingArrays& own, const std::vector<double>& values, Eigen::Index first) {
-  for (std::size_t i = 0; i < values.size(); i += record, ++first) {
-    std::memcpy(own.ids.data() + first, &values[i], sizeof(double));
-    own.positions.col(first) = Eigen::Map<const Eigen::Vector3d>(&values[i + 1]);
-    own.radii[first] = values[i + 4];
-    if (own.velocities.cols() > 0) own.velocities.col(first) = Eigen::Map<const Eigen::Vector3d>(&values[i + 5]);
-    if (own.angular_velocities.cols() > 0)
-      own.angular_velocities.col(first) = Eigen::Map<const Eigen::Vector3d>(&values[i + 8]);
-    if (own.displaced_volumes.size() > 0) own.displaced_volumes[first] = values[i + 11];
-  }
-}
-
-}  // namespace
-
 void PackingParts::deal(const Packing& rows) {
-  const Has has = has_any(rows, *ranks_);
+  const SphereArrays arrays = arrays_of_all(rows, *ranks_);
   std::vector<Ranks::Bytes> to(ranks_->count());
   for (int r = 0; r < ranks_->count(); ++r)
     for (const int k : sent_[r]) append_sphere(to[r], rows, k);
   const std::vector<Ranks::Bytes> from = ranks_->hand_over(to);
   Eigen::Index total = 0;
   for (const Ranks::Bytes& bytes : from) {
-    received_.push_back(static_cast<int>(bytes.size() / (record * sizeof(double))));
+    received_.push_back(static_cast<int>(spheres_in(bytes)));
     total += received_.back();
   }
-  own_.ids.resize(total);
-  own_.positions.resize(3, total);
-  own_.radii.resize(total);
-  own_.velocities.resize(3, has.velocities ? total : 0);
-  own_.angular_velocities.resize(3, has.spins ? total : 0);
-  own_.displaced_volumes.resize(has.displaced ? total : 0);
+  resize(own_, arrays, total);
   Eigen::Index next = 0;
   for (int r = 0; r < ranks_->count(); ++r) {
-    take_spheres(own_, values_in<double>(from[r]), next);
+    take_spheres(own_, from[r], next);
     next += received_[r];
   }
 }

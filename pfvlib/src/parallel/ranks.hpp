@@ -58,7 +58,7 @@ void append(Ranks::Bytes& bytes, const Value* values, std::size_t count) {
 template <class Value>
 std::vector<Value> values_in(const Ranks::Bytes& bytes) {
   std::vector<Value> values(bytes.size() / sizeof(Value));
-  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(Value));
+  if (!values.empty()) std::memcpy(static_cast<void*>(values.data()), bytes.data(), values.size() * sizeof(Value));
   return values;
 }
 

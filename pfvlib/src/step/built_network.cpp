@@ -50,6 +50,7 @@ Spheres own_grains(const BuiltNetwork& built) {
   for (int k = 0; k < all.size(); ++k)
     if (built.share.own_spheres[k]) own.push_back(k);
   Spheres spheres;
+  spheres.edges = all.edges;
   spheres.ids = Packing::Ids(all.ids(own));
   spheres.radii = Eigen::VectorXd(all.radii(own));
   if (all.displaced.size() > 0) spheres.displaced = Eigen::VectorXd(all.displaced(own));

@@ -35,7 +35,8 @@ void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNet
                      "with its packing, container and settings, or set a state without pressures, from which the fluid begins at 0 Pa");
   if (!memory.restored.empty())
     memory.pressures = Eigen::Map<const Eigen::VectorXd>(memory.restored.data(), pores);
-  else if (before.network && fluid.bulk_modulus && memory.pressures.size() == before.network->network.pores())
+  else if (before.network && memory.pressures.size() > 0 &&
+           memory.pressures.size() == before.network->network.pores())
     memory.pressures = carried_pressures(*before.network, memory.pressures, now);
   else
     memory.pressures.resize(0);

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "parallel/ranks.hpp"
+#include "pfv/packing.hpp"
+
+#include <vector>
+
+namespace pfv {
+
+// Spheres on their way from one rank to another, and parts of a packing.
+
+/// Which of the optional arrays any rank has: then all have them, with zeros. Collective.
+struct SphereArrays {
+  bool velocities = false, spins = false, displaced = false;
+};
+SphereArrays arrays_of_all(const Packing& packing, const Ranks& ranks);
+
+/// Sphere k of a packing, all that is known of it.
+void append_sphere(Ranks::Bytes& bytes, const Packing& packing, Eigen::Index k);
+/// How many spheres a message holds.
+Eigen::Index spheres_in(const Ranks::Bytes& bytes);
+/// Room for so many columns, what is there kept.
+void resize(PackingArrays& packing, const SphereArrays& arrays, Eigen::Index count);
+/// Those of a message into columns `first` and on.
+void take_spheres(PackingArrays& packing, const Ranks::Bytes& bytes, Eigen::Index first);
+
+/// These columns of a packing, in this order.
+PackingArrays columns_of(const PackingArrays& packing, const std::vector<int>& columns);
+
+}  // namespace pfv
