@@ -13,7 +13,7 @@ namespace pfv {
 namespace {
 
 /// Ranks first ... last - 1, whose places have not been divided yet.
-struct Group {
+struct RankGroup {
   int first, last;
   int middle() const { return first + (last - first) / 2; }
 };
@@ -24,7 +24,7 @@ struct Extent {
   double low = 0.0, high = 0.0;
 };
 
-std::vector<Extent> extents_of(const std::vector<Group>& groups, const std::vector<int>& group_of,
+std::vector<Extent> extents_of(const std::vector<RankGroup>& groups, const std::vector<int>& group_of,
                                const Eigen::Ref<const Eigen::Matrix3Xd>& places, const Ranks& ranks) {
   const auto count = static_cast<Eigen::Index>(groups.size());
   Eigen::MatrixXd reach = Eigen::MatrixXd::Constant(6, count, -std::numeric_limits<double>::infinity());
@@ -56,7 +56,7 @@ Eigen::VectorXd counts_below(const std::vector<Extent>& extents, const Eigen::Ve
 }
 
 /// Where each group is cut, so that both halves of its ranks have their share of its places.
-Eigen::VectorXd cuts_of(const std::vector<Group>& groups, const std::vector<Extent>& extents,
+Eigen::VectorXd cuts_of(const std::vector<RankGroup>& groups, const std::vector<Extent>& extents,
                         const std::vector<int>& group_of, const Eigen::Ref<const Eigen::Matrix3Xd>& places,
                         const Ranks& ranks) {
   constexpr int halvings = 40;
@@ -82,12 +82,12 @@ Eigen::VectorXd cuts_of(const std::vector<Group>& groups, const std::vector<Exte
 }  // namespace
 
 std::vector<int> ranks_by_place(const Eigen::Ref<const Eigen::Matrix3Xd>& places, const Ranks& ranks) {
-  std::vector<Group> groups{{0, ranks.count()}};
+  std::vector<RankGroup> groups{{0, ranks.count()}};
   std::vector<int> group_of(static_cast<std::size_t>(places.cols()), 0);
-  while (std::any_of(groups.begin(), groups.end(), [](const Group& g) { return g.last - g.first > 1; })) {
+  while (std::any_of(groups.begin(), groups.end(), [](const RankGroup& g) { return g.last - g.first > 1; })) {
     const std::vector<Extent> extents = extents_of(groups, group_of, places, ranks);
     const Eigen::VectorXd cuts = cuts_of(groups, extents, group_of, places, ranks);
-    std::vector<Group> halves;
+    std::vector<RankGroup> halves;
     std::vector<int> lower(groups.size());
     for (std::size_t g = 0; g < groups.size(); ++g) {
       lower[g] = static_cast<int>(halves.size());
