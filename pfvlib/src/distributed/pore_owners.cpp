@@ -15,10 +15,10 @@ namespace pfv {
 namespace {
 
 /// The vertices of a pore's first cell, by which all ranks know it.
-using Name = std::array<std::int64_t, 4>;
+using PoreName = std::array<std::int64_t, 4>;
 
-Name name_of(const std::array<Vertex, 4>& cell, const Spheres& spheres) {
-  Name name;
+PoreName name_of(const std::array<Vertex, 4>& cell, const Spheres& spheres) {
+  PoreName name;
   for (int i = 0; i < 4; ++i)
     name[i] = is_wall(cell[i]) ? std::numeric_limits<std::int64_t>::min() + wall_number(cell[i]) : spheres.ids[cell[i]];
   std::sort(name.begin(), name.end());
@@ -31,7 +31,7 @@ std::vector<int> first_cell_of_pores(const PoreNetwork& network) {
   return first;
 }
 
-std::string text_of(const Name& name) {
+std::string text_of(const PoreName& name) {
   std::string text;
   for (const std::int64_t id : name)
     if (id > std::numeric_limits<std::int64_t>::min() + 64) text += (text.empty() ? "" : ", ") + std::to_string(id);
@@ -53,7 +53,7 @@ Exchange exchange_of_spheres(const ActiveGrains& grains, const Halo& halo) {
 
 namespace {
 
-using NamedPores = std::vector<std::pair<Name, int>>;
+using NamedPores = std::vector<std::pair<PoreName, int>>;
 
 /// Own pores by name, and of others' pores the names, on their way to their owners.
 struct Sorted {
@@ -70,7 +70,7 @@ Sorted sort_pores(const PoreNetwork& network, const ActiveGrains& grains, const 
     if (!share.whole_pores[pore]) continue;
     const auto& cell = network.cell_vertices[first[pore]];
     const int owner = halo.owner_of(grains.columns[cell[0]]);
-    const Name name = name_of(cell, grains.spheres);
+    const PoreName name = name_of(cell, grains.spheres);
     if (owner == share.ranks->own()) {
       share.own_pores[pore] = 1;
       sorted.own.push_back({name, pore});
@@ -83,7 +83,7 @@ Sorted sort_pores(const PoreNetwork& network, const ActiveGrains& grains, const 
   return sorted;
 }
 
-int pore_of(const Name& name, const NamedPores& own) {
+int pore_of(const PoreName& name, const NamedPores& own) {
   const auto found = std::lower_bound(own.begin(), own.end(), std::pair(name, -1));
   if (found != own.end() && found->first == name) return found->second;
   throw SolverError("the ranks have found different pores between spheres " + text_of(name) +
@@ -104,7 +104,7 @@ void find_owners(const PoreNetwork& network, const ActiveGrains& grains, const H
   const std::vector<Ranks::Bytes> from = ranks.hand_over(sorted.wanted);
   ranks.together([&] {
     for (int r = 0; r < ranks.count(); ++r)
-      for (const Name& name : values_in<Name>(from[r])) share.pores.sent[r].push_back(pore_of(name, sorted.own));
+      for (const PoreName& name : values_in<PoreName>(from[r])) share.pores.sent[r].push_back(pore_of(name, sorted.own));
   });
 }
 
