@@ -22,7 +22,7 @@ void check(const Eigen::Matrix3Xd& centres, const Eigen::VectorXd& radii) {
 }
 
 /// Those that are not within another of the same centre, which no triangulation could tell apart.
-std::vector<int> distinct(const Eigen::Matrix3Xd& centres, const Eigen::VectorXd& radii) {
+std::vector<int> distinct_spheres(const Eigen::Matrix3Xd& centres, const Eigen::VectorXd& radii) {
   std::vector<int> kept;
   for (int k = 0; k < radii.size(); ++k) {
     bool covered = false;
@@ -63,7 +63,7 @@ Eigen::VectorXd union_parts(const Eigen::Matrix3Xd& centres, const Eigen::Vector
   check(centres, radii);
   Eigen::VectorXd volumes = Eigen::VectorXd::Zero(radii.size());
   if (radii.size() == 0) return volumes;
-  const std::vector<int> kept = distinct(centres, radii);
+  const std::vector<int> kept = distinct_spheres(centres, radii);
   const Spheres spheres = boxed(centres, radii, kept);
   const PoreSpace space = build_network(spheres, Eigen::Vector3d::Zero());
   const std::vector<SolidUnion> parts = solid_parts(space.network, space.spheres, spheres);
