@@ -71,7 +71,8 @@ Load average before the run {report['machine']['load_before']:.1f}, after it {re
 {phases(report)}
 
 `rebuild` is everything from a packing to forces where a network was before, `first` the same from nothing, `step` what a kept network costs while the grains'
-velocities change by 0.1 % a step.
+velocities change by 0.1 % a step. `solve` is the first one on a network: it reads the factor for the first time, and a second
+solve finds out whether a step needs corrections, which these do not; that is why it is above a whole `step`.
 
 ## Threads and precision
 
