@@ -5,6 +5,7 @@
 #include "pfv/dense_packing.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/error.hpp"
+#include "pfv/solve_plan.hpp"
 #include "support/containers.hpp"
 
 #include <cmath>
@@ -283,6 +284,67 @@ TEST(SharedFlow, TheSameBytesTwice) {
   EXPECT_EQ(forces(), forces());
 }
 
+TEST(SharedFlow, TheLimitOfTheTimeStep) {
+  pfv::Box box;
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  for (const pfv::PackingArrays& packing : {pfv::dense_packing(400), support::random_packing(40, 0.02, 0.04, 3)}) {
+    const Eigen::VectorXd masses = 1e3 * packing.radii.array().cube();
+    for (const Deal deal : {Deal::by_place, Deal::at_random, Deal::all_to_one}) {
+      const std::vector<int> columns = own_columns(packing, deal);
+      const pfv::PackingArrays part = part_of(packing, columns);
+      pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
+      one.evaluate(packing.view());
+      all.evaluate(part.view());
+      std::vector<pfv::Piston> pistons(6);
+      pistons[5].mass = 0.02;
+      const double expected = one.time_step_limit(masses, pistons);
+      const double found = all.time_step_limit(masses(columns), pistons);
+      EXPECT_NEAR(found / expected, 1.0, 0.005);  // both are searched for from places of their own
+      const std::int64_t solves = all.report().counts.limit_solve;
+      EXPECT_EQ(all.time_step_limit(masses(columns), pistons), found);
+      EXPECT_EQ(all.report().counts.limit_solve, solves);
+      Eigen::VectorXd bad = masses(columns);
+      if (world()->own() == 0 && bad.size() > 0) bad[0] = -1.0;
+      if (world()->any(bad.size() > 0 && bad[0] < 0.0)) {
+        EXPECT_THROW(all.time_step_limit(bad, pistons), pfv::InputError);
+      }
+    }
+  }
+}
+
+/// A bed that is set in motion by degrees, in the steps of a host: the same intervals, on a rank without grains too.
+TEST(SharedFlow, WhenTheFlowIsSolvedNext) {
+  pfv::PackingArrays packing = moving(pfv::dense_packing(300));
+  const Eigen::Matrix3Xd velocities = 0.02 * packing.velocities;
+  const Eigen::VectorXd masses = 1e3 * packing.radii.array().cube();
+  pfv::Box box;
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  for (const Deal deal : {Deal::by_place, Deal::all_to_one}) {
+    const std::vector<int> columns = own_columns(packing, deal);
+    pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
+    pfv::SolvePlan of_one(1e-2), of_all(1e-2, world());
+    const double dt = 1e-4;
+    int longest = 0, passed = 0;
+    for (int solve = 0; solve < 15; ++solve) {
+      packing.velocities = velocities * (2.0 + std::sin(1e-3 * passed));
+      const pfv::PackingArrays part = part_of(packing, columns);
+      one.step(packing.view(), dt);
+      all.step(part.view(), dt);
+      const Eigen::VectorXd own_masses = masses(columns);
+      const double motion = packing.velocities.norm();
+      const int steps = of_one.next().steps;
+      passed += steps;
+      of_one.take(one, {packing.view(), masses, {}, steps, dt, motion, 0.0, 0.01});
+      of_all.take(all, {part.view(), own_masses, {}, steps, dt, motion, 0.0, 0.01});
+      ASSERT_EQ(of_all.next().steps, of_one.next().steps) << "solve " << solve;
+      EXPECT_NEAR(of_all.next().sensitivity, of_one.next().sensitivity, 1e-6);
+      EXPECT_NEAR(of_all.interval().error(), of_one.interval().error(), 1e-6);
+      longest = std::max(longest, of_one.next().steps);
+    }
+    EXPECT_GE(longest, 3);
+  }
+}
+
 TEST(SharedFlow, AnErrorOnOneRankIsThatOfAll) {
   pfv::PackingArrays packing = pfv::dense_packing(200);
   const auto refusal = [&](const pfv::PackingArrays& of) {
@@ -326,6 +388,5 @@ TEST(SharedFlow, WhatRanksCannotDoTogetherIsRefused) {
   pressed.step(part.view(), 1e-3);
   pressed.rebuild();
   EXPECT_THROW(pressed.step(part.view(), 1e-3), pfv::InputError);
-  EXPECT_THROW(flow.time_step_limit(Eigen::VectorXd::Ones(part.ids.size())), pfv::InputError);
   EXPECT_THROW(flow.advance(part.view(), 1e-3, {pfv::Coupling::staged, nullptr, true, 1.0, {}}), pfv::InputError);
 }

@@ -160,7 +160,7 @@ class FlowModel {
   virtual double plane_pressure(int axis, double position) const = 0;
   /// Mean pressure over the fluid's volume, Pa.
   virtual double mean_pressure() const = 0;
-  /// The limit of the explicit coupling, dt < 2 / lambda_max of the drag, s, by power iteration on
+  /// The limit of the explicit coupling, dt < 2 / lambda_max of the drag, s, by Lanczos' iteration on
   /// the kept factor (masses in kg, one a sphere of the last packing; faces that are pistons count with
   /// theirs; spheres of rigid bodies move with these, and their own masses are not read). Infinite where nothing
   /// resists.

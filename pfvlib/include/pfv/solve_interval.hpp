@@ -5,7 +5,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace pfv {
@@ -30,8 +32,9 @@ struct HeldLoads {
 /// the loads themselves and what that load is on a grain's cross-section.
 class SolveInterval {
  public:
-  /// `tolerance` > 0: of the load, 1 is all of it.
-  explicit SolveInterval(double tolerance) : tolerance_(tolerance) {}
+  /// `tolerance` > 0: of the load, 1 is all of it. `ranks`: those that share the grains; each tells of its own.
+  explicit SolveInterval(double tolerance, std::shared_ptr<const Ranks> ranks = nullptr)
+      : tolerance_(tolerance), ranks_(std::move(ranks)) {}
 
   void restart();
 
@@ -84,8 +87,9 @@ class SolveInterval {
     double face, grain;  ///< N
   };
   static Loads loads_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces);
-  static double size_of(const Difference& difference, const Scales& scales);
-  static double error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales);
+  double root_mean_square(const Eigen::Matrix3Xd& grains) const;
+  double size_of(const Difference& difference, const Scales& scales) const;
+  double error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales) const;
   Scales scales_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces, double face_load,
                    double face_area, double section);
   Errors errors_of(const Loads& loads, const Scales& scales, double apart, double weight);
@@ -93,6 +97,7 @@ class SolveInterval {
   void choose(Errors errors, int most);
 
   double tolerance_;
+  std::shared_ptr<const Ranks> ranks_;  ///< null: one has all grains
   std::optional<Solve> last_;
   std::optional<Loads> trend_;  ///< change of the loads a step
   bool continues_ = false;

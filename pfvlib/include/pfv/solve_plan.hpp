@@ -39,8 +39,9 @@ struct NextSolve {
 /// asks for a solve.
 class SolvePlan {
  public:
-  /// `tolerance` > 0: of the load, 1 is all of it.
-  explicit SolvePlan(double tolerance) : interval_(tolerance) {}
+  /// `tolerance` > 0: of the load, 1 is all of it. `ranks`: those that share the flow; all of them call `take`.
+  explicit SolvePlan(double tolerance, std::shared_ptr<const Ranks> ranks = nullptr)
+      : ranks_(ranks), interval_(tolerance, std::move(ranks)) {}
 
   /// A run begins; what an earlier one saw is forgotten.
   void restart();
@@ -59,6 +60,7 @@ class SolvePlan {
   bool take_up_network(FlowModel& flow, const SolvedInstant& now) const;
   void update_sensitivity(double motion);
 
+  std::shared_ptr<const Ranks> ranks_;  ///< null: one has all grains
   SolveInterval interval_;
   NextSolve next_;
   bool solved_ = false;             ///< in this run

@@ -264,7 +264,7 @@ double DarcyData::time_step_limit(const Eigen::VectorXd& masses,
     }
     return acceleration;
   };
-  const double eigenvalue = largest_eigenvalue(drag, 3 * spheres + face_count);
+  const double eigenvalue = largest_eigenvalue_of_any(drag, 3 * spheres + face_count);
   return eigenvalue > 0.0 ? 2.0 / eigenvalue : std::numeric_limits<double>::infinity();
 }
 

@@ -77,7 +77,6 @@ double Flow::mean_pressure() const {
 
 double Flow::time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
                              const std::vector<RigidBody>& bodies) {
-  parts_->whole_network("the limit of the time step");
   return parts_->time_step_limit(masses, pistons, bodies);
 }
 

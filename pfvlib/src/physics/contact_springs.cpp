@@ -134,7 +134,7 @@ double ContactSprings::time_step_limit(const Eigen::VectorXd& masses) const {
     return Eigen::VectorXd(force.reshaped());
   };
   if (springs_.empty()) return infinite;
-  return 2.0 / std::sqrt(largest_eigenvalue(accelerations, 3 * spheres_));
+  return 2.0 / std::sqrt(largest_eigenvalue(accelerations, pseudo_random(3 * spheres_)));
 }
 
 }  // namespace pfv

@@ -74,22 +74,6 @@ void find_sphere_pressures(const BuiltNetwork& built, const Problem& problem,
 
 }  // namespace
 
-namespace {
-
-/// Those of faces are summed over all ranks; ghosts have theirs from their owners.
-void join_loads(const BuiltNetwork& built, Loads& loads) {
-  const Share& share = built.share;
-  if (!share.ranks) return;
-  const Eigen::Index spheres = built.grains.spheres.size();
-  for (Eigen::Index i = 0; i < spheres; ++i)
-    if (!share.own_spheres[i]) loads.col(i).setZero();
-  Eigen::VectorXd of_faces = loads.rightCols(loads.cols() - spheres).reshaped();
-  share.add(of_faces);
-  loads.rightCols(loads.cols() - spheres) = of_faces.reshaped(6, loads.cols() - spheres);
-}
-
-}  // namespace
-
 void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& packing,
                  WorkRecord& work, Solution& solution, Forces& forces) {
   const PhaseClock clock(work.seconds.forces);

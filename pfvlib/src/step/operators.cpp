@@ -109,6 +109,17 @@ Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures) {
   return loads;
 }
 
+void join_loads(const BuiltNetwork& built, Loads& loads) {
+  const Share& share = built.share;
+  if (!share.ranks) return;
+  const Eigen::Index spheres = built.grains.spheres.size();
+  for (Eigen::Index i = 0; i < spheres; ++i)
+    if (!share.own_spheres[i]) loads.col(i).setZero();
+  Eigen::VectorXd of_faces = loads.rightCols(loads.cols() - spheres).reshaped();
+  share.add(of_faces);
+  loads.rightCols(loads.cols() - spheres) = of_faces.reshaped(6, loads.cols() - spheres);
+}
+
 const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
   auto& kept = built.operators.gradient_loads;
   const Eigen::Vector3d& gradient = problem.container.pressure_gradient;

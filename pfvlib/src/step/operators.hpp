@@ -23,6 +23,8 @@ std::int64_t open_water_count(const BuiltNetwork& built);
 
 /// S p with the pressures on the faces, N and N m.
 Loads loads_of(const BuiltNetwork& built, const Eigen::VectorXd& pressures);
+/// Those of faces are summed over all ranks; ghosts have theirs from their owners.
+void join_loads(const BuiltNetwork& built, Loads& loads);
 /// What a macroscopic gradient adds to it; kept for that gradient.
 const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem);
 /// Shear forces of this motion; none where switched off.

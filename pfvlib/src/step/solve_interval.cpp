@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pfv/solve_interval.hpp"
 
+#include "parallel/ranks.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,12 +15,6 @@ constexpr double aim = 0.7;    // of the tolerance
 constexpr double fastest_growth = 1.5, fastest_fall = 0.25;  // of the interval, at a solve
 constexpr double at_once = 0.1;  // of the tolerance: what an error may be that does not last
 constexpr double fading = 0.9;  // of what errors were, at a solve: they pass through zero where trends turn
-
-template <class Columns>
-double root_mean_square(const Columns& columns) {
-  return columns.cols() > 0 ? std::sqrt(columns.squaredNorm() / static_cast<double>(columns.cols()))
-                            : 0.0;
-}
 
 double largest_norm(const std::vector<Eigen::Vector3d>& faces) {
   double largest = 0.0;
@@ -58,14 +54,21 @@ SolveInterval::Loads SolveInterval::loads_of(const Forces& forces, const std::ve
   return loads;
 }
 
-double SolveInterval::size_of(const Difference& difference, const Scales& scales) {
+/// Of the norms of columns, on all ranks.
+double SolveInterval::root_mean_square(const Eigen::Matrix3Xd& grains) const {
+  double sums[] = {grains.squaredNorm(), static_cast<double>(grains.cols())};
+  if (ranks_) ranks_->add(sums, 2);
+  return sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
+}
+
+double SolveInterval::size_of(const Difference& difference, const Scales& scales) const {
   return std::max(ratio(largest_norm(difference.faces), scales.face),
                   ratio(root_mean_square(difference.grains), scales.grain));
 }
 
 /// Takes what a solve has missed into the mean with this weight.
-double SolveInterval::error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales) {
-  if (mean.grains.cols() != missed.grains.cols()) {
+double SolveInterval::error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales) const {
+  if (mean.faces.empty()) {
     mean = missed;
   } else {
     mean.grains += weight * (missed.grains - mean.grains);
@@ -136,7 +139,8 @@ void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
                          const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
                          double face_area, double section, int most,
                          bool new_network, double answer) {
-  if (last_ && (ids.size() != last_->ids.size() || ids != last_->ids)) restart();
+  const bool others = last_ && (ids.size() != last_->ids.size() || ids != last_->ids);
+  if (ranks_ ? ranks_->any(others) : others) restart();
   Loads loads = loads_of(forces, faces);
   const Scales scales = scales_of(forces, faces, face_load, face_area, section);
   if (last_ && new_network) {

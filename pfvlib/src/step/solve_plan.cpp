@@ -2,6 +2,7 @@
 #include "pfv/solve_plan.hpp"
 
 #include "geometry/pi.hpp"
+#include "parallel/ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -76,16 +77,19 @@ double weight_of(const SolvedInstant& now, const Fluid& fluid) {
 
 void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
   const auto& radii = now.packing.radii;
-  if (radii.size() == 0) {
+  double sums[] = {static_cast<double>(radii.size()), radii.squaredNorm(), weight_of(now, flow.fluid())};
+  if (ranks_) ranks_->add(sums, 3);
+  const auto [grains, squares, weight] = sums;
+  if (grains == 0.0) {
     next_ = {1, 0.0, 0.0, now.motion};
     return;
   }
-  const double section = pi * radii.squaredNorm() / static_cast<double>(radii.size());
+  const double section = pi * squares / grains;
   const std::vector<double> areas = face_areas(flow.container());
   const double area = *std::max_element(areas.begin(), areas.end());
   const bool new_network = flow.retriangulations() != last_network_;
   last_network_ = flow.retriangulations();
-  const double load = std::max(now.load_on_faces, weight_of(now, flow.fluid()));
+  const double load = std::max(now.load_on_faces, weight);
   const int most = most_steps(flow, now);
   const double answer = 0.5 * limit_ / now.step;  // the fastest motion fades by 2 / limit; not known: below 0
   interval_.take(now.packing.ids, flow.forces(), flow.face_forces(), now.steps, load, area, section, most,

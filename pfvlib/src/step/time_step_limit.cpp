@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace pfv {
 
@@ -23,6 +24,7 @@ Matrix6Xd inverse_roots(const BuiltNetwork& built, const Container& container, c
   const int spheres = built.grains.spheres.size(), faces = container.face_count();
   Matrix6Xd root = no_motion(spheres, faces + static_cast<Eigen::Index>(bodies.size()));
   for (int i = 0; i < spheres; ++i) {
+    if (!built.share.owns_sphere(i)) continue;  // its owner counts it
     const double mass = masses[built.grains.columns[i]];
     root.col(i).head<3>().setConstant(1.0 / std::sqrt(mass));
     root.col(i).tail<3>().setConstant(
@@ -40,24 +42,69 @@ Matrix6Xd inverse_roots(const BuiltNetwork& built, const Container& container, c
   return root;
 }
 
+/// Where the iteration begins: on several ranks from numbers that a sphere's id makes, whoever has it.
+Eigen::VectorXd start_of(const BuiltNetwork& built, Eigen::Index columns) {
+  if (!built.share.ranks) return pseudo_random(6 * columns);
+  Matrix6Xd start(6, columns);
+  const Packing::Ids& ids = built.grains.spheres.ids;
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    std::mt19937_64 generator(static_cast<std::uint64_t>(i < ids.size() ? ids[i] : i - ids.size()));
+    for (int k = 0; k < 6; ++k) start(k, i) = static_cast<double>(generator() >> 11) * 0x1p-53 - 0.5;
+    if (i < ids.size() && !built.share.owns_sphere(static_cast<int>(i))) start.col(i).setZero();
+  }
+  return start.reshaped();
+}
+
+/// Of what all ranks have: spheres where they are owned, faces once.
+double product_of(const BuiltNetwork& built, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  if (!built.share.ranks) return a.dot(b);
+  const Eigen::Index of_spheres = 6 * built.grains.spheres.size(), others = a.size() - of_spheres;
+  return built.share.sum(a.head(of_spheres).dot(b.head(of_spheres))) + a.tail(others).dot(b.tail(others));
+}
+
 /// Largest eigenvalue of M^-1 S G^-1 S^T, 1/s (with geometric rates E in place of S^T). The operator is
 /// similar to it and, but for those, symmetric.
 double largest_drag(const BuiltNetwork& built, const Problem& problem,
                     const Eigen::VectorXd& masses, const std::vector<RigidBody>& bodies, std::int64_t& solves) {
-  if (built.grains.spheres.size() == 0) return 0.0;
+  const Share& share = built.share;
+  const int spheres = built.grains.spheres.size();
+  if (!share.any(spheres > 0)) return 0.0;
   const std::optional<RigidBodies>& held = built.operators.bodies;
   const Matrix6Xd root = inverse_roots(built, problem.container, masses, bodies);
   Eigen::VectorXd opened;
   const auto drag = [&](const Eigen::VectorXd& u) {
     Motion v = (u.reshaped(6, root.cols()).array() * root.array()).matrix();
     if (held) v = held->spread(v);
+    if (share.ranks) share.spheres.refresh(*share.ranks, v);
     rates_of(built, v, *problem.team, opened);
     Loads load = loads_of(built, homogeneous_pressures(built, opened, solves)) -
                  resisting_forces(built, problem.fluid.viscosity, v);
+    join_loads(built, load);
     if (held) load = held->gathered(load);
     return Eigen::VectorXd((load.array() * root.array()).matrix().reshaped());
   };
-  return largest_eigenvalue(drag, static_cast<int>(root.size()));
+  if (built.operators.geometric_rates) return largest_eigenvalue_of_any(drag, root.size());
+  return largest_eigenvalue(drag, start_of(built, root.cols()), [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return product_of(built, a, b);
+  });
+}
+
+/// Of spheres and faces, then those and the inertias of bodies. Throws InputError.
+Eigen::VectorXd all_masses(const BuiltNetwork& built, Eigen::Index spheres, int faces, const Eigen::VectorXd& masses,
+                           const std::vector<Piston>& pistons, const std::vector<RigidBody>& bodies) {
+  Eigen::VectorXd all(spheres + faces + 6 * static_cast<Eigen::Index>(bodies.size()));
+  built.share.together([&] {
+    if (masses.size() != spheres)
+      throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
+                       std::to_string(spheres) + " spheres; give one a sphere");
+    check_bodies(bodies, built.grains.held);
+    all.head(spheres) = masses;
+    all.tail(all.size() - spheres - faces) = yielding_of_bodies(bodies, 1.0).reshaped();
+    for (int f = 0; f < faces; ++f) all[spheres + f] = piston_of(pistons, f).mass;
+    if (!(all.head(spheres + faces).array() > 0.0).all())
+      throw InputError("time step limit: a mass is not a positive number; give kg");
+  });
+  return all;
 }
 
 }  // namespace
@@ -65,20 +112,11 @@ double largest_drag(const BuiltNetwork& built, const Problem& problem,
 double TimeStepLimit::of(BuiltNetwork& built, const Problem& problem, Eigen::Index spheres,
                          const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
                          const std::vector<RigidBody>& bodies, WorkRecord& work) {
-  if (masses.size() != spheres)
-    throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
-                     std::to_string(spheres) + " spheres; give one a sphere");
   const int faces = problem.container.face_count();
-  check_bodies(bodies, built.grains.held);
-  const auto body_count = static_cast<Eigen::Index>(bodies.size());
-  Eigen::VectorXd all(spheres + faces + 6 * body_count);
-  all.head(spheres) = masses;
-  all.tail(6 * body_count) = yielding_of_bodies(bodies, 1.0).reshaped();
-  for (int f = 0; f < faces; ++f) all[spheres + f] = piston_of(pistons, f).mass;
-  if (!(all.head(spheres + faces).array() > 0.0).all())
-    throw InputError("time step limit: a mass is not a positive number; give kg");
+  const Eigen::VectorXd all = all_masses(built, spheres, faces, masses, pistons, bodies);
   const bool still = is_still(problem.container);
-  if (limit_ && all.size() == masses_.size() && all == masses_ && still == still_water_) return *limit_;
+  const bool is_known = limit_ && all.size() == masses_.size() && all == masses_ && still == still_water_;
+  if (!built.share.any(!is_known)) return *limit_;
   limit_.reset();
   still_water_ = still;
   make_force_matrices(built, problem, work.counts);
