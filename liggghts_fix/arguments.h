@@ -81,6 +81,7 @@ struct PfvSettings : pfv::Settings {
   std::vector<pfv::ContainerFace> faces;
   std::vector<PfvFaceSource> sources = std::vector<PfvFaceSource>(6);  ///< of the box's faces, or of these
   std::array<std::optional<PfvCosine>, 6> profiles;
+  std::vector<std::string> left_out;  ///< walls that are no faces, each with the reason
   std::vector<PfvObstacleSource> obstacles;
   std::vector<PfvBinding> bindings;
   std::optional<PfvFieldOutput> fields;

@@ -360,16 +360,22 @@ pfv::FaceCondition PfvFaceSources::condition(int number, pfv::Wall wall,
           gliding.pivot};
 }
 
-void PfvFaceSources::follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& centres,
-                                   const Eigen::Ref<const Eigen::VectorXd>& radii) {
-  if (container_ && radii.size() > 0) turn_outwards(centres.rowwise().mean());
+bool PfvFaceSources::wants_grains() const {
+  const bool any_extent = std::any_of(sources_.begin(), sources_.end(), [](const PfvFaceSource& source) {
+    return source.kind == Source::extent;
+  });
+  const bool any_way_unknown = std::find(outwards_.begin(), outwards_.end(), 0.0) != outwards_.end();
+  return any_extent || (container_ && any_way_unknown);
+}
+
+void PfvFaceSources::follow_grains(const PfvGrainTotals& grains) {
+  if (container_ && grains.count > 0.0) turn_outwards(grains.mean);
   for (int number = 0; number < count(); ++number) {
     if (sources_[number].kind != Source::extent) continue;
-    if (radii.size() == 0) fail(number, "`extent` has no grain to follow; the group is empty");
+    if (grains.count == 0.0) fail(number, "`extent` has no grain to follow; the group is empty");
     const int axis = axis_of(number);
     const bool upper = container_ ? shapes_[number].surface.normal[axis] > 0.0 : number % 2 == 1;
-    const auto coordinates = centres.row(axis).transpose();
-    const double extreme = upper ? (coordinates + radii).maxCoeff() : (coordinates - radii).minCoeff();
+    const double extreme = (upper ? grains.upper : grains.lower)[axis];
     if (container_) shapes_[number].surface.offset = upper ? extreme : -extreme;
     positions_[number] = extreme;
   }

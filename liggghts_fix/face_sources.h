@@ -4,6 +4,7 @@
 #define LMP_PFV_FACE_SOURCES_H
 
 #include "arguments.h"
+#include "flow_ranks.h"
 
 #include "pfv/flow_model.hpp"
 #include "pfv/mesh_walls.hpp"
@@ -34,10 +35,11 @@ class PfvFaceSources : protected Pointers {
   /// pfv::InputError, the same on all ranks, for a mesh that is no longer normal to its axis.
   void read();
 
-  /// Puts `extent` faces at the extremes of the grains; rank 0. Throws pfv::InputError when there
+  /// Whether `follow_grains` has anything to do.
+  bool wants_grains() const;
+  /// Puts `extent` faces at the extremes of the grains, where the flow is. Throws pfv::InputError when there
   /// are none.
-  void follow_grains(const Eigen::Ref<const Eigen::Matrix3Xd>& centres,
-                     const Eigen::Ref<const Eigen::VectorXd>& radii);
+  void follow_grains(const PfvGrainTotals& grains);
 
   /// m; of a container's faces a number that changes with their place.
   const std::vector<double>& positions() const { return positions_; }

@@ -30,13 +30,14 @@ namespace LAMMPS_NS {
 using namespace FixConst;
 
 FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(lmp), cell_(lmp), grains_(lmp), bodies_(lmp),
-      obstacles_(lmp) {
+      obstacles_(lmp), ranks_(world) {
   check_environment();
   everywhere([&] {
     settings_ = parse_pfv(narg - 3, arg + 3, cell_.axes());
-    left_out_ = PfvFoundWalls(lmp, groupbit).complete(settings_);
+    settings_.left_out = PfvFoundWalls(lmp, groupbit).complete(settings_);
   });
-  on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_); });
+  on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_, true); });
+  if (!files_) files_ = std::make_unique<PfvResultFiles>(settings_, false);
 
   scalar_flag = vector_flag = 1;
   size_vector = own_quantities + 6 * static_cast<int>(settings_.obstacles.size());
@@ -55,10 +56,7 @@ void FixPfv::post_create() {
   const std::string property_id = std::string(id) + "_prop";
   std::vector<const char*> words{property_id.c_str(), group->names[igroup], "property/atom",
                                  property_id.c_str(), "vector", "no", "no", "no"};
-  words.insert(words.end(),
-               settings_.steps.couple_error ? PfvGrainExchange::width_with_slopes
-                                      : PfvGrainExchange::returned_width,
-               "0.");
+  words.insert(words.end(), home_column() + (comm->nprocs > 1 ? 1 : 0), "0.");
   per_atom_ = modify->add_fix_property_atom(static_cast<int>(words.size()),
                                             const_cast<char**>(words.data()), style);
   array_atom = per_atom_->array_atom;
@@ -77,6 +75,7 @@ void FixPfv::init() {
   check_other_fixes();
   bind_coupling();
   check_cell();
+  choose_ranks();
   everywhere([&] {
     faces_.bind(settings_);
     obstacles_.bind(settings_, groupbit);
@@ -97,12 +96,12 @@ void FixPfv::everywhere(Work&& work) {
   }
 }
 
-std::string FixPfv::with_culprits(const std::exception& problem) const {
+std::string FixPfv::with_culprits(const std::exception& problem, const pfv::Packing& grains) const {
   const std::string message = problem.what();
   const auto* error = dynamic_cast<const pfv::Error*>(&problem);
   if (!settings_.culprits || !error) return message;
   try {
-    pfv::write_culprits(*settings_.culprits, grains_.packing(), error->culprits());
+    if (ranks_.is_first()) pfv::write_culprits(*settings_.culprits, grains, error->culprits());
   } catch (const pfv::FileError& unwritten) {
     return message + " (" + unwritten.what() + ")";
   }
@@ -192,7 +191,8 @@ void FixPfv::check_other_fixes() {
 
 /// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
-  grains_.gather(others_.groups, needs_forces(), cell_.streaming(since_.cell_rates));
+  grains_.gather(others_.groups, needs_forces(), cell_.streaming(since_.cell_rates), homes());
+  deal_where_due();
   bodies_.apply(others_.groups, settings_.fluid.gravity, grains_);
   everywhere([&] {
     faces_.read();
@@ -206,14 +206,14 @@ void FixPfv::read_host() {
 /// couple_every, whose mean velocities would hold the displacement. Collective, after read_host.
 void FixPfv::begin_anew_where_moved() {
   int moved = 0;
-  on_root([&] {
+  on_flow([&] {
     if (!flow_.has_left()) return;
-    const pfv::Packing packing = grains_.grains();
-    faces_.follow_grains(packing.positions, packing.radii);
-    moved = flow_.begins_anew(state_of(grains_));
+    follow_grains(grains_);
+    moved = !flow_.is_as_left(state_of(grains_));
   });
-  MPI_Bcast(&moved, 1, MPI_INT, 0, world);
+  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
   if (!moved) return;
+  on_flow([&] { flow_.begin_anew(state_of(grains_)); });
   bodies_.forget();
   since_.cell_rates = {};
   for (int f = 0; f < container_.face_count(); ++f)
@@ -226,17 +226,21 @@ void FixPfv::begin_anew_where_moved() {
   since_.grains = {};
 }
 
+/// Puts faces where the grains are, if any ask for that. Where the flow is.
+void FixPfv::follow_grains(const PfvGrainExchange& grains) {
+  if (faces_.wants_grains()) faces_.follow_grains(totals_of(grains.grains(), ranks_));
+}
+
 /// What the next run compares with. The grains of the last flow step stay as they were gathered.
 void FixPfv::remember_state() {
   PfvGrainExchange now(lmp);
-  now.gather(others_.groups, false);
+  now.gather(others_.groups, false, {}, homes());
   everywhere([&] {
     faces_.read();
     obstacles_.read();
   });
-  on_root([&] {
-    const pfv::Packing packing = now.packing();
-    if (packing.size() > 0) faces_.follow_grains(packing.positions, packing.radii);
+  on_flow([&] {
+    if (ranks_.any(now.packing().size() > 0)) follow_grains(now);
     flow_.leave(state_of(now));
   });
 }
@@ -282,11 +286,12 @@ void FixPfv::setup(int) {
   if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
   const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, groupbit, settings_);
   const std::vector<double> mesh_areas = faces_.mesh_areas();
-  on_root([&] {
+  on_flow([&] {
     place_faces(container_);
     warn_of_empty_box();
-    for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.grains())) warn_of(warning);
-    flow_.prepare(container_, settings_, grains_.packing(), flow_step());
+    for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.grains(), ranks_))
+      warn_of(warning);
+    flow_.prepare(container_, settings_, grains_.packing(), flow_step(), ranks_.library());
     check_servos();
     call_flow(flow_step(), false);
     warn_of_gaps(mesh_areas);
@@ -327,7 +332,7 @@ void FixPfv::advance() {
   const Eigen::Vector3d lengths = cell_lengths_then();
   since_.face_positions = faces_.positions();
   since_.pivots = faces_.pivots();
-  on_root([&] {
+  on_flow([&] {
     place_faces(container_);
     if (mean) grains_.use_mean_velocities(since_.grains, since_.time, lengths);
     flow_->set_container(container_);
@@ -341,15 +346,15 @@ void FixPfv::advance() {
 }
 
 void FixPfv::after_flow_call() {
-  on_root([&] {
+  on_flow([&] {
     flow_.forget_report();
     obstacles_.take_loads(grains_, flow_->forces());
     files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep);
     if (files_->history_due(update->ntimestep))
       files_->write_history(history_row(*flow_, flow_.report(), update->ntimestep, schedule_.taken()));
   });
-  grains_.scatter(comm->me == 0 ? flow_->forces() : pfv::Forces{},
-                  comm->me == 0 ? schedule_.held() : nullptr,
+  grains_.scatter(ranks_.is_one() ? flow_->forces() : pfv::Forces{},
+                  ranks_.is_one() ? schedule_.held() : nullptr,
                   per_atom_->array_atom, settings_.steps.couple_error.has_value());
 }
 
@@ -368,14 +373,14 @@ void FixPfv::apply_forces() {
 }
 
 void FixPfv::push_meshes() {
-  if (comm->me != 0) return;
-  obstacles_.push();
+  if (!ranks_.is_one()) return;
+  if (ranks_.is_first()) obstacles_.push();
   if (!faces_.any_mesh()) return;
   std::vector<Eigen::Vector3d> forces = flow_->face_forces();
   if (const double trend = schedule_.steps_of_trend(since_.steps); trend != 0.0)
     for (std::size_t f = 0; f < forces.size(); ++f)
       forces[f] += trend * schedule_.held()->face_slope[f];
-  faces_.push_meshes(forces);
+  if (ranks_.is_first()) faces_.push_meshes(forces);
 }
 
 // ------------------------------------------------------------------------------- changes, restart
@@ -383,7 +388,7 @@ void FixPfv::push_meshes() {
 int FixPfv::modify_param(int narg, char** arg) {
   int taken = 0;
   everywhere([&] { taken = modify_pfv(settings_, narg, arg); });
-  on_root([&] {
+  on_flow([&] {
     if (auto* pores = dynamic_cast<pfv::Flow*>(flow_.get()))
       pores->set_retriangulation(settings_.options.strain_measure,
                                  settings_.options.retriangulation_strain);
@@ -396,6 +401,7 @@ int FixPfv::modify_param(int narg, char** arg) {
 /// Boundary values stay as they were: between runs LIGGGHTS cannot evaluate every variable.
 void FixPfv::write_restart(FILE* file) {
   bodies_.forget();
+  ranks_.dealt.wanted = true;  // as the run that starts from the file will
   read_host();
   begin_anew_where_moved();
   PfvRestartRecord record;
@@ -405,13 +411,16 @@ void FixPfv::write_restart(FILE* file) {
   record.last_positions = since_.face_positions;
   record.cell_rates = since_.cell_rates;
   record.taken = schedule_.taken();
-  on_root([&] {
+  on_flow([&] {
     if (flow_) place_faces(container_);
     if (auto state = flow_.state_on_new_network(container_, grains_.packing(), flow_step()))
       record.flow = std::move(*state);
+    if (ranks_.are_all()) record.flow.pore_pressures.clear();  // an incompressible fluid has no use for them
     if (flow_ && since_.grains.tags.empty()) since_.grains = grains_.snapshot();
     if (settings_.steps.couple_every > 1 || settings_.steps.couple_error || cell_.changes())
-      record.last_grains = since_.grains;
+      record.last_grains = gathered(since_.grains, ranks_);
+  });
+  on_root([&] {
     record.written = files_->written();
     if (obstacles_.any()) record.obstacles = obstacles_.record();
     const std::vector<double> data = pack(record);
@@ -432,7 +441,6 @@ void FixPfv::restart(char* bytes) {
     since_.cell_rates = record.cell_rates;
     schedule_.go_on_after(record.taken);
     obstacles_.restore(record.obstacles);
-    if (!files_) return;  // not rank 0
     since_.grains = std::move(record.last_grains);
     files_->resume(record.step, record.flow.time, std::move(record.written));
     flow_.begin_with(std::move(record.flow));

@@ -12,6 +12,7 @@ FixStyle(pfv,FixPfv)
 #include "arguments.h"
 #include "bodies.h"
 #include "face_sources.h"
+#include "flow_ranks.h"
 #include "found_walls.h"
 #include "grain_exchange.h"
 #include "kept_flow.h"
@@ -32,8 +33,8 @@ FixStyle(pfv,FixPfv)
 
 namespace LAMMPS_NS {
 
-/// Gathers the grains on rank 0, calls the flow library once, scatters the forces. The physics is
-/// in pfv::FlowModel, which lives on rank 0 alone; everything else here is the same on all ranks.
+/// Gathers the grains where the flow is, calls the flow library once, scatters the forces. The physics is in
+/// pfv::FlowModel, which lives on rank 0 alone or is shared by all ranks; everything else here is the same on all.
 class FixPfv : public Fix {
  public:
   FixPfv(class LAMMPS*, int, char**);
@@ -63,9 +64,14 @@ class FixPfv : public Fix {
   void everywhere(Work&& work);  ///< work that fails on all ranks or on none
   template <typename Work>
   void on_root(Work&& work);  ///< work of rank 0, whose failure the others are told of
+  template <typename Work>
+  void on_flow(Work&& work);  ///< work of the ranks that hold the flow
+  void fail_on_flow(const std::exception& problem);
   void stop(const char* file, int line, const std::string& problem);
   void fail_together(std::string message);
-  std::string with_culprits(const std::exception& problem) const;  ///< its text, once they are written
+  /// Its text, once those of the grains that it names are drawn.
+  std::string with_culprits(const std::exception& problem, const pfv::Packing& grains) const;
+  pfv::PackingArrays grains_named(const std::vector<std::int64_t>& tags) const;
 
   // refusals
   void check_environment();
@@ -80,6 +86,7 @@ class FixPfv : public Fix {
   void read_host();
   void advance();
   void place_faces(pfv::Container& container);
+  void follow_grains(const PfvGrainExchange& grains);
   void use_mean_velocities_of_faces();
   void move_cell(pfv::Container& container) const;
   Eigen::Vector3d cell_lengths_then() const;
@@ -96,6 +103,15 @@ class FixPfv : public Fix {
   void after_flow_call();
   void apply_forces();
   void push_meshes();
+
+  // which ranks hold the flow, and which grains
+  void choose_ranks();
+  std::string needs_one_rank() const;
+  int home_column() const;  ///< of the per-atom array, behind the loads
+  PfvHomes homes() const;
+  void deal_where_due();
+  void deal_anew();
+  double spread() const;
 
   // when to solve the flow
   bool adapts() const;
@@ -122,7 +138,6 @@ class FixPfv : public Fix {
   void print(const std::string& text);
 
   PfvSettings settings_;
-  std::vector<std::string> left_out_;  ///< walls that are no faces, each with the reason
   PfvFaceSources faces_;
   PfvPeriodicCell cell_;
   PfvGrainExchange grains_;
@@ -130,12 +145,13 @@ class FixPfv : public Fix {
   PfvObstacles obstacles_;
   PfvOfOthers others_;
   class FixPropertyAtom* per_atom_ = nullptr;
+  PfvFlowRanks ranks_;
   pfv::Container container_;
 
   PfvSinceSolve since_;
   PfvSolveSchedule schedule_;
 
-  // rank 0 only
+  // where the flow is
   PfvKeptFlow flow_;
   std::unique_ptr<PfvResultFiles> files_;
   struct Said {
@@ -148,17 +164,25 @@ class FixPfv : public Fix {
 template <typename Work>
 void FixPfv::on_root(Work&& work) {
   std::string message;
-  int rank = 0;
-  MPI_Comm_rank(world, &rank);
-  if (rank == 0) {
+  if (ranks_.is_first()) {
     try {
       work();
     } catch (const std::exception& problem) {
-      message = with_culprits(problem);
+      message = with_culprits(problem, grains_.packing());
       if (message.empty()) message = "an exception without a text";
     }
   }
   fail_together(message);
+}
+
+template <typename Work>
+void FixPfv::on_flow(Work&& work) {
+  if (!ranks_.are_all()) return on_root(work);
+  try {
+    work();
+  } catch (const std::exception& problem) {
+    fail_on_flow(problem);
+  }
 }
 
 }  // namespace LAMMPS_NS

@@ -15,7 +15,7 @@ double FixPfv::compute_scalar() { return compute_vector(-1); }
 
 double FixPfv::compute_vector(int n) {
   double value = 0.0;
-  on_root([&] {
+  on_flow([&] {
     if (flow_) value = quantity(n);
   });
   MPI_Bcast(&value, 1, MPI_DOUBLE, 0, world);
@@ -41,7 +41,7 @@ double FixPfv::quantity(int n) {
 
 void FixPfv::post_run() {
   remember_state();
-  on_root([&] {
+  on_flow([&] {
     if (flow_) print_phases();
   });
 }

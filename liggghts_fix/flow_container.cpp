@@ -76,10 +76,9 @@ Eigen::Vector3d FixPfv::cell_lengths_then() const {
   return lengths;
 }
 
-/// Completes the container on rank 0, where the grains are, and the grains with the obstacles in it.
+/// Completes the container where the flow is, and the grains with the obstacles in it.
 void FixPfv::place_faces(pfv::Container& container) {
-  const pfv::Packing packing = grains_.grains();
-  faces_.follow_grains(packing.positions, packing.radii);
+  follow_grains(grains_);
   if (settings_.container) {
     for (int number = 0; number < container.face_count(); ++number)
       container.faces[number].surface = faces_.surface(number);
@@ -110,7 +109,7 @@ void FixPfv::use_mean_velocities_of_faces() {
 }
 
 /// Grains that are there but all outside: most likely the box or the units are not those meant. A box
-/// that grains will be poured into has none yet, and is left in peace. Rank 0.
+/// that grains will be poured into has none yet, and is left in peace. Where the flow is.
 void FixPfv::warn_of_empty_box() const {
   const pfv::Packing packing = grains_.grains();
   const auto is_inside = [&](Eigen::Index k) {
@@ -118,19 +117,20 @@ void FixPfv::warn_of_empty_box() const {
       return face.surface.distance(packing.positions.col(k)) > 0.0;
     });
   };
-  bool any = packing.size() == 0;
+  bool any = false;
   for (Eigen::Index k = 0; k < packing.size() && !any; ++k) any = is_inside(k);
-  if (any) return;
+  const PfvGrainTotals grains = totals_of(packing, ranks_);
+  if (grains.count == 0.0 || ranks_.any(any)) return;
   std::ostringstream text;
   const auto reach = [&text](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     for (int axis = 0; axis < 3; ++axis)
       text << (axis ? ", " : "") << "xyz"[axis] << " from " << from[axis] << " to " << to[axis];
   };
-  text << "all " << packing.size() << " grains of the group are outside the "
+  text << "all " << grains.count << " grains of the group are outside the "
        << "flow box, the fluid acts on none; the box reaches ";
   reach(container_.lower, container_.upper);
   text << " m, the centres of the grains ";
-  reach(packing.positions.rowwise().minCoeff(), packing.positions.rowwise().maxCoeff());
+  reach(grains.lowest_centre, grains.highest_centre);
   text << " m";
   warn_of(text.str());
 }
@@ -139,7 +139,7 @@ void FixPfv::warn_of(const std::string& problem) const {
   error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + problem).c_str());
 }
 
-/// A face goes on where its mesh ends: a gate, a plate with an opening. Rank 0.
+/// A face goes on where its mesh ends: a gate, a plate with an opening. Where the flow is.
 void FixPfv::warn_of_gaps(const std::vector<double>& mesh_areas) const {
   if (!settings_.container) return;
   constexpr double whole = 0.95;
@@ -154,7 +154,7 @@ void FixPfv::warn_of_gaps(const std::vector<double>& mesh_areas) const {
   }
 }
 
-/// What became of each wall: a line for the faces of a container, one for each wall that is none. Rank 0.
+/// What became of each wall: a line for the faces of a container, one for each wall that is none. Where the flow is.
 void FixPfv::say_what_holds_the_fluid() {
   if (!settings_.container) return;
   const std::string beginning = "Fix pfv (id " + std::string(id) + "): ";
@@ -162,10 +162,10 @@ void FixPfv::say_what_holds_the_fluid() {
   for (int number = 0; number < container_.face_count(); ++number)
     text += (number ? ", " : "") + faces_.described(number);
   print(beginning + "held by " + std::to_string(container_.face_count()) + " walls: " + text + "\n");
-  for (const std::string& reason : left_out_) print(beginning + "left out: " + reason + "\n");
+  for (const std::string& reason : settings_.left_out) print(beginning + "left out: " + reason + "\n");
 }
 
-/// Of the grains, without the spheres of obstacles. Rank 0.
+/// Of the grains, without the spheres of obstacles. Where the flow is.
 std::int64_t FixPfv::hidden_or_outside() const {
   if (!obstacles_.any()) return flow_->hidden_or_outside();
   const pfv::Packing packing = grains_.grains();
@@ -180,28 +180,29 @@ std::int64_t FixPfv::hidden_or_outside() const {
   return count;
 }
 
-/// A line from which a wrong unit, a box beside the grains or one that is mostly empty is seen. Rank 0.
+/// A line from which a wrong unit, a box beside the grains or one that is mostly empty is seen. Where the flow is.
 void FixPfv::say_what_is_filled() {
   const pfv::Packing packing = grains_.grains();
+  const PfvGrainTotals grains = totals_of(packing, ranks_);
   for (const std::string& line : obstacles_.news()) print("Fix pfv (id " + std::string(id) + "): " + line + "\n");
   const auto is_grain = [&](int column) { return column < packing.size(); };
   const std::vector<int> hidden = flow_->hidden();
-  const std::int64_t outside = hidden_or_outside() - std::count_if(hidden.begin(), hidden.end(), is_grain);
+  const std::int64_t seen_nowhere = hidden_or_outside();
+  const double outside = static_cast<double>(seen_nowhere) -
+                         ranks_.sum(static_cast<double>(std::count_if(hidden.begin(), hidden.end(), is_grain)));
   const double volume = pfv::volume_of(container_);
-  const double solid = 4.0 / 3.0 * M_PI * packing.radii.array().cube().sum();
   char text[300];
-  if (packing.size() == 0)
+  if (grains.count == 0.0)
     std::snprintf(text, sizeof text, "%s of %.4g m3, no grains yet\n", container_.is_box ? "flow box" : "container", volume);
   else
     std::snprintf(text, sizeof text,
-                  "%s of %.4g m3, %ld grains inside, %ld outside, diameters %.4g to %.4g m, grains are %.3g %% of "
+                  "%s of %.4g m3, %.0f grains inside, %.0f outside, diameters %.4g to %.4g m, grains are %.3g %% of "
                   "the volume\n",
-                  container_.is_box ? "flow box" : "container", volume,
-                  static_cast<long>(packing.size() - outside), static_cast<long>(outside),
-                  2.0 * packing.radii.minCoeff(), 2.0 * packing.radii.maxCoeff(), 100.0 * solid / volume);
+                  container_.is_box ? "flow box" : "container", volume, grains.count - outside, outside,
+                  2.0 * grains.smallest, 2.0 * grains.largest, 100.0 * grains.solid / volume);
   print("Fix pfv (id " + std::string(id) + "): " + text);
-  if (packing.size() > 0 && 2.0 * packing.radii.mean() > pfv::largest_usual_diameter)
-    warn_of("the mean diameter of the grains is " + std::to_string(2.0 * packing.radii.mean()) +
+  if (2.0 * grains.mean_radius > pfv::largest_usual_diameter)
+    warn_of("the mean diameter of the grains is " + std::to_string(2.0 * grains.mean_radius) +
             " m; lengths are in m, not mm");
 }
 

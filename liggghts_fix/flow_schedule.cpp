@@ -38,7 +38,7 @@ double FixPfv::gross_motion() const {
 void FixPfv::plan_next_solve(int steps) {
   const double on_meshes = faces_.largest_load();
   const double motion = gross_motion();
-  on_root([&] {
+  on_flow([&] {
     schedule_.take(*flow_, {grains_.packing(), grains_.masses(), faces_.pistons(), steps, update->dt, motion,
                            on_meshes, settings_.options.retriangulation_strain, &bodies_.rigid()});
   });

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grain_exchange.h"
 
+#include "pfv/ranks.hpp"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace LAMMPS_NS {
@@ -20,22 +24,54 @@ constexpr int periods_width = 3;
 
 }  // namespace
 
-void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces, const PfvStreaming& streaming) {
+void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces, const PfvStreaming& streaming,
+                              const PfvHomes& homes) {
   groupbit_ = groups.flow;
   with_forces_ = with_forces;
   periodic_ = PfvPeriodicCell(lmp).any();
-  pack_mine(groups, streaming);
-  rows_.gather();
-  if (comm->me != 0) return;
+  std::vector<int> home;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit_) home.push_back(homes.is_known(i) ? homes.of(i) : comm->me);
+  rows_.set_homes(std::move(home));
+  received_ = rows_.to_homes(packed(groups, streaming), width());
   sort_by_tag();
   unpack();
 }
 
-void PfvGrainExchange::pack_mine(const PfvGroups& groups, const PfvStreaming& streaming) {
+void PfvGrainExchange::deal(const PfvHomes& homes, const pfv::Ranks& ranks) {
+  const std::vector<int> parts = pfv::parts_by_place(grains_.positions, ranks);
+  Eigen::MatrixXd values(1, static_cast<Eigen::Index>(parts.size()));
+  for (std::size_t k = 0; k < parts.size(); ++k) values(0, static_cast<Eigen::Index>(k)) = 1.0 + parts[k];
+  const std::vector<double> mine = at_atoms(values);
+  std::size_t next = 0;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit_) homes.per_atom[i][homes.column] = mine[next++];
+}
+
+std::vector<double> PfvGrainExchange::at_atoms(const Eigen::MatrixXd& at_homes) const {
+  std::vector<double> rows(static_cast<std::size_t>(at_homes.size()));
+  for (Eigen::Index k = 0; k < at_homes.cols(); ++k)
+    Eigen::Map<Eigen::VectorXd>(&rows[static_cast<std::size_t>(at_homes.rows()) * order_[k]], at_homes.rows()) = at_homes.col(k);
+  return rows_.back(rows, static_cast<int>(at_homes.rows()));
+}
+
+Eigen::MatrixXd PfvGrainExchange::at_homes(const std::vector<double>& at_atoms, int width) const {
+  const std::vector<double> rows = rows_.to_homes(at_atoms, width);
+  Eigen::MatrixXd values(width, grain_count());
+  for (Eigen::Index k = 0; k < values.cols(); ++k)
+    values.col(k) = Eigen::Map<const Eigen::VectorXd>(&rows[std::size_t(width) * order_[k]], width);
+  return values;
+}
+
+int PfvGrainExchange::width() const {
+  return plain_width + (with_forces_ ? loads_width : 0) + (periodic_ ? periods_width : 0);
+}
+
+/// A row for each grain of this rank.
+std::vector<double> PfvGrainExchange::packed(const PfvGroups& groups, const PfvStreaming& streaming) const {
   constexpr double immovable = std::numeric_limits<double>::infinity();
   const PfvPeriodicCell cell(lmp);
-  std::vector<double>& mine =
-      rows_.begin(plain_width + (with_forces_ ? loads_width : 0) + (periodic_ ? periods_width : 0));
+  std::vector<double> mine;
   for (int i = 0; i < atom->nlocal; ++i) {
     const int mask = atom->mask[i];
     if (!(mask & groupbit_)) continue;
@@ -56,12 +92,13 @@ void PfvGrainExchange::pack_mine(const PfvGroups& groups, const PfvStreaming& st
     const Eigen::Vector3d periods = cell.periods(i);
     mine.insert(mine.end(), periods.begin(), periods.end());
   }
+  return mine;
 }
 
 void PfvGrainExchange::sort_by_tag() {
   const int count = rows_.count();
   const auto by_tag = [this](int a, int b) {
-    return rows_.row(a)[0] < rows_.row(b)[0];
+    return received(a)[0] < received(b)[0];
   };
   // atoms change their places in LIGGGHTS' arrays seldom: the last order mostly still holds
   if (static_cast<int>(order_.size()) != count) {
@@ -89,7 +126,7 @@ void PfvGrainExchange::unpack() {
   unwrapped_.resize(3, periodic_ ? count : 0);
   const Eigen::Map<const Eigen::Vector3d> lengths(domain->prd);
   for (int k = 0; k < count; ++k) {
-    const double* row = rows_.row(order_[k]);
+    const double* row = received(order_[k]);
     grains_.ids[k] = static_cast<std::int64_t>(row[0]);
     grains_.positions.col(k) << row[1], row[2], row[3];
     grains_.velocities.col(k) << row[4], row[5], row[6];
@@ -98,7 +135,7 @@ void PfvGrainExchange::unpack() {
     grains_.angular_velocities.col(k) << row[9], row[10], row[11];
     if (periodic_)
       unwrapped_.col(k) = grains_.positions.col(k) +
-                          Eigen::Map<const Eigen::Vector3d>(row + rows_.width() - periods_width).cwiseProduct(lengths);
+                          Eigen::Map<const Eigen::Vector3d>(row + width() - periods_width).cwiseProduct(lengths);
     if (!with_forces_) continue;
     forces_.col(k) << row[12], row[13], row[14];
     torques_.col(k) << row[15], row[16], row[17];
@@ -145,6 +182,45 @@ void PfvGrainExchange::use_mean_velocities(const PfvSnapshot& then, double elaps
   }
 }
 
+Eigen::MatrixXd PfvSnapshot::columns(const pfv::Packing::Ids& ids) const {
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(width, ids.size());
+  std::size_t old = 0;
+  for (Eigen::Index k = 0; k < ids.size(); ++k) {
+    while (old < tags.size() && tags[old] < ids[k]) ++old;
+    if (old < tags.size() && tags[old] == ids[k])
+      values.col(k) << 1.0, places[3 * old], places[3 * old + 1], places[3 * old + 2];
+  }
+  return values;
+}
+
+PfvSnapshot PfvSnapshot::of_columns(const pfv::Packing::Ids& ids, const Eigen::MatrixXd& columns) {
+  PfvSnapshot snapshot;
+  for (Eigen::Index k = 0; k < ids.size(); ++k) {
+    if (columns(0, k) == 0.0) continue;
+    snapshot.tags.push_back(ids[k]);
+    for (int axis = 0; axis < 3; ++axis) snapshot.places.push_back(columns(1 + axis, k));
+  }
+  return snapshot;
+}
+
+PfvSnapshot gathered(const PfvSnapshot& own, const PfvFlowRanks& ranks) {
+  if (!ranks.are_all()) return own;
+  std::vector<double> rows;
+  for (std::size_t k = 0; k < own.tags.size(); ++k) {
+    rows.push_back(static_cast<double>(own.tags[k]));
+    rows.insert(rows.end(), &own.places[3 * k], &own.places[3 * k] + 3);
+  }
+  std::map<std::int64_t, std::array<double, 3>> by_tag;
+  const std::vector<double> all = ranks.gathered(rows);
+  for (std::size_t k = 0; k < all.size(); k += 4) by_tag[static_cast<std::int64_t>(all[k])] = {all[k + 1], all[k + 2], all[k + 3]};
+  PfvSnapshot snapshot;
+  for (const auto& [tag, place] : by_tag) {
+    snapshot.tags.push_back(tag);
+    snapshot.places.insert(snapshot.places.end(), place.begin(), place.end());
+  }
+  return snapshot;
+}
+
 PfvSnapshot PfvGrainExchange::snapshot() const {
   const auto& ids = grains_.ids;
   const auto& places = grains_.positions;
@@ -154,20 +230,15 @@ PfvSnapshot PfvGrainExchange::snapshot() const {
 void PfvGrainExchange::scatter(const pfv::Forces& forces, const pfv::HeldLoads* held,
                                double** per_atom, bool with_slopes) {
   const int width = with_slopes ? width_with_slopes : returned_width;
-  std::vector<double> all;
-  if (comm->me == 0) {
-    all.resize(width * order_.size());
-    const bool sloped = with_slopes && held && held->slope.cols() == forces.total.cols();
-    for (std::size_t k = 0; k < order_.size(); ++k) {
-      double* row = &all[std::size_t(width) * order_[k]];
-      Eigen::Map<Eigen::Vector3d>{row} = forces.total.col(k);
-      row[3] = forces.sphere_pressure[k];
-      if (forces.torque.cols() > 0) Eigen::Map<Eigen::Vector3d>{row + 4} = forces.torque.col(k);
-      if (sloped)
-        Eigen::Map<Eigen::Matrix<double, 6, 1>>{row + returned_width} = held->slope.col(k);
-    }
+  const auto count = static_cast<Eigen::Index>(order_.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(width, count);
+  if (count > 0) {
+    all.topRows<3>() = forces.total.leftCols(count);
+    all.row(3) = forces.sphere_pressure.head(count).transpose();
+    if (forces.torque.cols() > 0) all.middleRows<3>(4) = forces.torque.leftCols(count);
+    if (with_slopes && held && held->slope.cols() == forces.total.cols()) all.bottomRows<6>() = held->slope.leftCols(count);
   }
-  const std::vector<double> mine = rows_.scatter(all, width);
+  const std::vector<double> mine = at_atoms(all);
   const double* row = mine.data();
   for (int i = 0; i < atom->nlocal; ++i) {
     if (atom->mask[i] & groupbit_) {

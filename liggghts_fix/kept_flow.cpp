@@ -8,7 +8,7 @@
 namespace LAMMPS_NS {
 
 void PfvKeptFlow::prepare(const pfv::Container& container, const PfvSettings& settings, const pfv::Packing& grains,
-                          double dt) {
+                          double dt, const std::shared_ptr<const pfv::Ranks>& ranks) {
   if (model_ && model_->fluid().gravity == settings.fluid.gravity &&
       model_->fluid().viscosity == settings.fluid.viscosity) {
     model_->set_container(container);
@@ -20,7 +20,7 @@ void PfvKeptFlow::prepare(const pfv::Container& container, const PfvSettings& se
     model_->evaluate(grains, dt);
     restored_ = model_->state();
   }
-  model_ = pfv::make_flow(container, settings.fluid, settings.options, settings.grid());
+  model_ = pfv::make_flow(container, settings.fluid, settings.options, settings.grid(), ranks);
   if (restored_) model_->set_state(*restored_);
   restored_.reset();
 }
@@ -39,11 +39,9 @@ void PfvKeptFlow::leave(PfvLeftState state) {
   if (model_) left_ = std::move(state);
 }
 
-bool PfvKeptFlow::begins_anew(PfvLeftState found) {
-  if (!model_ || !left_ || *left_ == found) return false;
+void PfvKeptFlow::begin_anew(PfvLeftState found) {
   model_->rebuild();
   left_ = std::move(found);
-  return true;
 }
 
 const pfv::Report& PfvKeptFlow::report() {

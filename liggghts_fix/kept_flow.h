@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The flow of rank 0 from run to run: a new fluid, a restart file, what was moved by hand between runs.
+// The flow from run to run, where it is held: a new fluid, a restart file, what was moved by hand between runs.
 #ifndef LMP_PFV_KEPT_FLOW_H
 #define LMP_PFV_KEPT_FLOW_H
 
@@ -22,7 +22,9 @@ class PfvKeptFlow {
 
   /// A flow keeps its fluid for life: where gravity or viscosity have changed since the last run, another one takes
   /// over its state, on a network that both build from the same grains. `dt`: s, of a flow step.
-  void prepare(const pfv::Container& container, const PfvSettings& settings, const pfv::Packing& grains, double dt);
+  /// `ranks`: those that share it; null: one has it.
+  void prepare(const pfv::Container& container, const PfvSettings& settings, const pfv::Packing& grains, double dt,
+               const std::shared_ptr<const pfv::Ranks>& ranks);
   /// What the next flow begins with: that of a restart file.
   void begin_with(pfv::FlowState state) { restored_ = std::move(state); }
   /// The state from which this run and one from a restart file go on alike: the network is built anew from the
@@ -32,8 +34,10 @@ class PfvKeptFlow {
 
   /// A run ends with grains and faces in this state ...
   void leave(PfvLeftState state);
-  /// ... the next one finds them in another, or not: then the network begins anew.
-  bool begins_anew(PfvLeftState found);
+  /// ... the next one finds them in another, or not.
+  bool is_as_left(const PfvLeftState& found) const { return !model_ || !left_ || *left_ == found; }
+  /// The network begins anew.
+  void begin_anew(PfvLeftState found);
   bool has_left() const { return left_.has_value(); }
   void begin_run() { left_.reset(); }
 

@@ -4,6 +4,7 @@
 #include "comm.h"
 
 #include <mpi.h>
+#include <algorithm>
 #include <numeric>
 
 namespace LAMMPS_NS {
@@ -18,34 +19,45 @@ std::vector<int> times(const std::vector<int>& counts, int width) {
 
 }  // namespace
 
-std::vector<double>& PfvRankRows::begin(int width) {
-  width_ = width;
-  local_.clear();
-  return local_;
+void PfvRankRows::Ends::sum_up() {
+  offsets.resize(counts.size());
+  std::exclusive_scan(counts.begin(), counts.end(), offsets.begin(), 0);
+  total = offsets.back() + counts.back();
 }
 
-void PfvRankRows::gather() {
-  local_count_ = static_cast<int>(local_.size()) / width_;
-  counts_.resize(comm->nprocs);
-  offsets_.resize(comm->nprocs);
-  MPI_Gather(&local_count_, 1, MPI_INT, counts_.data(), 1, MPI_INT, 0, world);
-  if (comm->me == 0) {
-    std::exclusive_scan(counts_.begin(), counts_.end(), offsets_.begin(), 0);
-    received_.resize(std::size_t(width_) * (offsets_.back() + counts_.back()));
-  }
-  MPI_Gatherv(local_.data(), width_ * local_count_, MPI_DOUBLE, received_.data(), times(counts_, width_).data(),
-              times(offsets_, width_).data(), MPI_DOUBLE, 0, world);
+void PfvRankRows::set_homes(std::vector<int> homes) {
+  leaving_.counts.assign(comm->nprocs, 0);
+  for (const int home : homes) ++leaving_.counts[home];
+  leaving_.sum_up();
+  arriving_.counts.resize(comm->nprocs);
+  MPI_Alltoall(leaving_.counts.data(), 1, MPI_INT, arriving_.counts.data(), 1, MPI_INT, world);
+  arriving_.sum_up();
+  std::vector<int> next = leaving_.offsets;
+  place_ = std::move(homes);
+  for (int& place : place_) place = next[place]++;
 }
 
-std::vector<double> PfvRankRows::scatter(const std::vector<double>& all, int width) {
-  std::vector<double> mine(std::size_t(width) * local_count_);
-  MPI_Scatterv(all.data(), times(counts_, width).data(), times(offsets_, width).data(), MPI_DOUBLE, mine.data(),
-               width * local_count_, MPI_DOUBLE, 0, world);
+std::vector<double> PfvRankRows::exchanged(const std::vector<double>& rows, const Ends& from, const Ends& to,
+                                           int width) const {
+  std::vector<double> result(std::size_t(width) * to.total);
+  MPI_Alltoallv(rows.data(), times(from.counts, width).data(), times(from.offsets, width).data(), MPI_DOUBLE,
+                result.data(), times(to.counts, width).data(), times(to.offsets, width).data(), MPI_DOUBLE, world);
+  return result;
+}
+
+std::vector<double> PfvRankRows::to_homes(const std::vector<double>& mine, int width) const {
+  std::vector<double> rows(mine.size());
+  for (std::size_t k = 0; k < place_.size(); ++k)
+    std::copy_n(&mine[width * k], width, &rows[std::size_t(width) * place_[k]]);
+  return exchanged(rows, leaving_, arriving_, width);
+}
+
+std::vector<double> PfvRankRows::back(const std::vector<double>& here, int width) const {
+  const std::vector<double> rows = exchanged(here, arriving_, leaving_, width);
+  std::vector<double> mine(rows.size());
+  for (std::size_t k = 0; k < place_.size(); ++k)
+    std::copy_n(&rows[std::size_t(width) * place_[k]], width, &mine[width * k]);
   return mine;
-}
-
-double PfvRankRows::memory_usage() const {
-  return sizeof(double) * static_cast<double>(local_.capacity() + received_.capacity());
 }
 
 }  // namespace LAMMPS_NS

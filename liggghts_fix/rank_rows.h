@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of numbers of all ranks on rank 0, and rows back to where they came from.
+// Rows of numbers from where LIGGGHTS has the atoms to the ranks that have them in the flow, and back.
 #ifndef LMP_PFV_RANK_ROWS_H
 #define LMP_PFV_RANK_ROWS_H
 
@@ -14,24 +14,27 @@ class PfvRankRows : protected Pointers {
  public:
   explicit PfvRankRows(class LAMMPS* lmp) : Pointers(lmp) {}
 
-  /// Empty, for this rank's rows of `width` numbers each, one after the other.
-  std::vector<double>& begin(int width);
-  int width() const { return width_; }
-  /// The rows of all ranks on rank 0, in the order of the ranks; collective.
-  void gather();
-  int count() const { return static_cast<int>(received_.size()) / width_; }  ///< rank 0
-  const double* row(int k) const { return &received_[std::size_t(width_) * k]; }
+  /// The rank that each of this rank's rows goes to; collective.
+  void set_homes(std::vector<int> homes);
+  /// Rows that arrive here.
+  int count() const { return arriving_.total; }
 
-  /// This rank's part of `all` (rank 0), which has a row of `width` numbers for each that was gathered; collective.
-  std::vector<double> scatter(const std::vector<double>& all, int width);
-
-  double memory_usage() const;
+  /// `mine`: `width` numbers for each row of this rank. Those of the rows that arrive here, in the order of the ranks
+  /// that they come from; collective.
+  std::vector<double> to_homes(const std::vector<double>& mine, int width) const;
+  /// The other way round: `here` has `width` numbers for each row that has arrived; collective.
+  std::vector<double> back(const std::vector<double>& here, int width) const;
 
  private:
-  int width_ = 1;                      // numbers a row
-  int local_count_ = 0;                // rows
-  std::vector<double> local_, received_;
-  std::vector<int> counts_, offsets_;  // rows of each rank
+  struct Ends {
+    std::vector<int> counts, offsets;  ///< rows of each rank
+    int total = 0;
+    void sum_up();
+  };
+  std::vector<double> exchanged(const std::vector<double>& rows, const Ends& from, const Ends& to, int width) const;
+
+  std::vector<int> place_;  ///< of each own row among those that leave, which stand in the order of their homes
+  Ends leaving_, arriving_;
 };
 
 }  // namespace LAMMPS_NS

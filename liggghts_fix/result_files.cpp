@@ -81,8 +81,9 @@ bool PfvSchedule::due(std::int64_t step) {
   return due;
 }
 
-PfvRowFile::PfvRowFile(std::string path, int every) : path_(std::move(path)), schedule_(every) {
-  pfv::require_folder_of(path_);
+PfvRowFile::PfvRowFile(std::string path, int every, bool is_written)
+    : path_(std::move(path)), is_written_(is_written), schedule_(every) {
+  if (is_written_) pfv::require_folder_of(path_);
 }
 
 void PfvRowFile::resume(std::int64_t step, double time) {
@@ -98,6 +99,7 @@ void PfvRowFile::begin(const std::string& header) {
 }
 
 void PfvRowFile::write_row(const PfvNamedRow& row) {
+  if (!is_written_) return;
   if (!file_.is_open()) begin(row.names);
   const char* separator = "";
   for (const double value : row.values) {
@@ -109,18 +111,18 @@ void PfvRowFile::write_row(const PfvNamedRow& row) {
   if (!file_) throw pfv::FileError("'" + path_ + "' cannot be written; is the disk full?");
 }
 
-PfvResultFiles::PfvResultFiles(const PfvSettings& settings)
+PfvResultFiles::PfvResultFiles(const PfvSettings& settings, bool are_written)
     : fields_(settings.fields), profile_(settings.profile),
       flux_profile_(settings.flux_profile), sensors_(settings.sensors) {
-  if (settings.culprits) pfv::require_folder_of(*settings.culprits);
+  if (settings.culprits && are_written) pfv::require_folder_of(*settings.culprits);
   if (fields_) {
-    pfv::require_folder_of(fields_->path);
+    if (are_written) pfv::require_folder_of(fields_->path);
     field_schedule_ = PfvSchedule(fields_->every);
   }
-  if (profile_) profile_file_.emplace(profile_->path, profile_->every);
-  if (flux_profile_) flux_file_.emplace(flux_profile_->path, flux_profile_->every);
-  if (sensors_) sensor_file_.emplace(sensors_->path, sensors_->every);
-  if (settings.history) history_file_.emplace(settings.history->path, settings.history->every);
+  if (profile_) profile_file_.emplace(profile_->path, profile_->every, are_written);
+  if (flux_profile_) flux_file_.emplace(flux_profile_->path, flux_profile_->every, are_written);
+  if (sensors_) sensor_file_.emplace(sensors_->path, sensors_->every, are_written);
+  if (settings.history) history_file_.emplace(settings.history->path, settings.history->every, are_written);
 }
 
 void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWrittenStep> written) {

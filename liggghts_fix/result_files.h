@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `fix pfv` writes itself: the fields for ParaView and the pressure profile. Rank 0 only.
+// What `fix pfv` writes itself: the fields for ParaView, rows of planes and places, its history.
 #ifndef LMP_PFV_RESULT_FILES_H
 #define LMP_PFV_RESULT_FILES_H
 
@@ -39,8 +39,8 @@ struct PfvWrittenStep {
 /// A file of comma-separated rows that a restarted run goes on with.
 class PfvRowFile {
  public:
-  /// Throws pfv::InputError where the folder is missing or cannot be written.
-  PfvRowFile(std::string path, int every);
+  /// `is_written`: on this rank. Throws pfv::InputError where the folder is missing or cannot be written.
+  PfvRowFile(std::string path, int every, bool is_written);
 
   /// Keeps the rows that the run before has written up to the flow time `time`.
   void resume(std::int64_t step, double time);
@@ -52,6 +52,7 @@ class PfvRowFile {
   void begin(const std::string& header);
 
   std::string path_;
+  bool is_written_;
   PfvSchedule schedule_;
   std::optional<double> resumed_time_;
   std::ofstream file_;
@@ -59,8 +60,9 @@ class PfvRowFile {
 
 class PfvResultFiles {
  public:
-  /// Throws pfv::InputError where a folder is missing or cannot be written.
-  explicit PfvResultFiles(const PfvSettings& settings);
+  /// `are_written`: on this rank; others that hold the flow ask it for the same. Throws pfv::InputError where a folder
+  /// is missing or cannot be written.
+  PfvResultFiles(const PfvSettings& settings, bool are_written);
 
   /// Goes on with the files of the run that wrote the restart file at `step` and flow time `time`.
   void resume(std::int64_t step, double time, std::vector<PfvWrittenStep> written);

@@ -28,7 +28,7 @@ Eigen::VectorXd along_guides(const std::vector<Eigen::Vector3d>& forces, const p
 /// N s/m: column j is what the fluid sets against each face when face j moves with 1 m/s along its axis and
 /// then back in the next flow step, and so on, the grains being too slow to follow. A compressible fluid
 /// answers such a motion as it would a steady one in steps of half the length: A p' = B p + q with
-/// p' = -p, where A = G + B, is (G + 2 B) p' = q. Rank 0. Cost: a solve for each face with a gain, and two
+/// p' = -p, where A = G + B, is (G + 2 B) p' = q. Where the flow is. Cost: a solve for each face with a gain, and two
 /// factorisations where the fluid is compressible.
 Eigen::MatrixXd FixPfv::resistances_to(const std::vector<PfvServoGain>& gains) {
   const auto forces_in = [&](const pfv::Container& container) {
@@ -51,8 +51,8 @@ Eigen::MatrixXd FixPfv::resistances_to(const std::vector<PfvServoGain>& gains) {
 
 /// A proportional servo answers the force F of a step with v = K (target - F) in the next, the fluid that
 /// with F = R v: where an eigenvalue of K R is above 1, v changes its sign in each step and grows, up to
-/// vel_max. Dashpots and stiffness of the contacts take their own part of that 1. Rank 0, before the flow of
-/// the setup.
+/// vel_max. Dashpots and stiffness of the contacts take their own part of that 1. Where the flow is, before
+/// its first call of the setup.
 void FixPfv::check_servos() {
   constexpr double left_to_contacts = 0.5;
   const std::vector<PfvServoGain> gains = faces_.proportional_gains();

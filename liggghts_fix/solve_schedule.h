@@ -10,6 +10,7 @@
 #include "pfv/solve_plan.hpp"
 
 #include <Eigen/Core>
+#include <memory>
 #include <mpi.h>
 #include <optional>
 #include <string>
@@ -24,7 +25,7 @@ struct PfvSinceSolve {
   std::vector<double> face_positions;
   std::vector<Eigen::Vector3d> pivots;  // of a container's faces
   PfvCellRates cell_rates{};            // of a periodic cell, over the interval that ended with it
-  PfvSnapshot grains;                   // rank 0
+  PfvSnapshot grains;                   // where the flow is
   bool from_restart_file = false;       // and no run since
 };
 
@@ -36,6 +37,10 @@ class PfvSolveSchedule {
     if (tolerance) plan_.emplace(*tolerance);
   }
 
+  /// The flow is on several ranks.
+  void share_among(std::shared_ptr<const pfv::Ranks> ranks) {
+    if (plan_) plan_.emplace(plan_->interval().tolerance(), std::move(ranks));
+  }
   bool adapts() const { return plan_.has_value(); }
   void begin_run();
   void count_step() { ++taken_.steps; }
@@ -43,21 +48,29 @@ class PfvSolveSchedule {
   const PfvTaken& taken() const { return taken_; }
   void go_on_after(const PfvTaken& taken) { taken_ = taken; }
 
-  /// Decides on the next solve from the loads of this one; rank 0, then `share` with all.
+  /// Decides on the next solve from the loads of this one, where the flow is; then `share` with all.
   void take(pfv::FlowModel& flow, const pfv::SolvedInstant& now);
   void share(MPI_Comm world);
+
+  /// Of grains that are dealt anew; see pfv::SolveInterval. No rows where nothing is remembered.
+  Eigen::MatrixXd memory_of_grains(const pfv::Packing::Ids& ids) {
+    return plan_ ? plan_->memory_of_grains(ids) : Eigen::MatrixXd(0, ids.size());
+  }
+  void remember_grains(const pfv::Packing::Ids& ids, const Eigen::MatrixXd& memory) {
+    if (plan_) plan_->remember_grains(ids, memory);
+  }
 
   const pfv::NextSolve& next() const { return next_; }
   /// Steps from the instant that the loads of the last solve belong to until now, `since` steps after it; 0 where
   /// they are held.
   double steps_of_trend(int since) const { return adapts() && next_.steps > 1 ? next_.offset + since : 0.0; }
-  /// How loads go on between solves; null where they are held. Rank 0.
+  /// How loads go on between solves; null where they are held. Where the flow is.
   const pfv::HeldLoads* held() const { return plan_ ? &plan_->interval().held() : nullptr; }
-  /// A line on all runs so far; empty where the interval was given. Rank 0.
+  /// A line on all runs so far; empty where the interval was given. Where the flow is.
   std::string summary() const;
 
  private:
-  std::optional<pfv::SolvePlan> plan_;  // rank 0's is in use
+  std::optional<pfv::SolvePlan> plan_;  // in use where the flow is
   pfv::NextSolve next_;
   PfvTaken taken_;
 };

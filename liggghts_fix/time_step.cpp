@@ -23,7 +23,7 @@ bool FixPfv::needs_forces() const { return settings_.steps.coupling != pfv::Coup
 
 double FixPfv::flow_step() const { return settings_.steps.couple_every * update->dt; }
 
-/// One call of the flow, over `dt` (s); rank 0.
+/// One call of the flow, over `dt` (s); where the flow is.
 void FixPfv::call_flow(double dt, bool commit) {
   const pfv::GrainDynamics dynamics =
       needs_forces() ? grains_.dynamics(faces_.pistons(), bodies_.rigid()) : pfv::GrainDynamics{};
@@ -34,7 +34,7 @@ void FixPfv::call_flow(double dt, bool commit) {
                   settings_.steps.safety, obstacle});
 }
 
-/// Where the time step stands now; its warnings, once a run. Rank 0.
+/// Where the time step stands now; its warnings, once a run. Where the flow is.
 pfv::TimeStepCheck FixPfv::look_at_time_step() {
   const pfv::TimeStepCheck check = pfv::check_time_step(*flow_, grains_.packing(), grains_.masses(),
                                                         faces_.pistons(), flow_step(), bodies_.rigid());
@@ -49,7 +49,7 @@ pfv::TimeStepCheck FixPfv::look_at_time_step() {
   return check;
 }
 
-/// At the beginning of a run; rank 0.
+/// At the beginning of a run; where the flow is.
 void FixPfv::check_time_step() {
   said_.time_step = false;
   if (!settings_.steps.time_step_check && !needs_forces()) return;
@@ -57,7 +57,7 @@ void FixPfv::check_time_step() {
 }
 
 /// Within a run: a packing that grows denser, or pores that close, bring the limit down. A look costs about as
-/// much as a network. Rank 0.
+/// much as a network. Where the flow is.
 void FixPfv::watch_time_step() {
   constexpr std::int64_t networks_between = 20;
   if (!settings_.steps.time_step_check || said_.time_step || settings_.model != pfv::Model::pores ||

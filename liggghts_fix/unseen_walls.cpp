@@ -34,10 +34,11 @@ double depth_in(const pfv::Container& container, const Vector& place) {
 }
 
 /// The part of the container's volume that is on the other side of a wall than most grains.
-double part_beyond(const pfv::Surface& wall, const pfv::Container& container, const pfv::Packing& packing) {
-  Eigen::Index before = 0;
+double part_beyond(const pfv::Surface& wall, const pfv::Container& container, const pfv::Packing& packing,
+                   const PfvFlowRanks& ranks) {
+  double before = 0.0;
   for (Eigen::Index k = 0; k < packing.size(); ++k) before += wall.distance(packing.positions.col(k)) > 0.0;
-  const bool fluid_before = 2 * before >= packing.size();
+  const bool fluid_before = 2.0 * ranks.sum(before) >= ranks.sum(static_cast<double>(packing.size()));
   int within = 0, beyond = 0;
   for (int i = 1; i <= samples; ++i) {
     const Vector part(halton(i, 2), halton(i, 3), halton(i, 5));
@@ -92,20 +93,22 @@ std::vector<PfvUnseenWall> walls_beside_the_faces(LAMMPS* lmp, int groupbit, con
 }
 
 std::vector<std::string> warnings_of_unseen_walls(const std::vector<PfvUnseenWall>& walls,
-                                                  const pfv::Container& container, const pfv::Packing& packing) {
+                                                  const pfv::Container& container, const pfv::Packing& packing,
+                                                  const PfvFlowRanks& ranks) {
   std::vector<std::string> warnings;
-  if (packing.size() == 0) return warnings;
+  const double mean_radius = totals_of(packing, ranks).mean_radius;
+  if (!ranks.any(packing.size() > 0)) return warnings;
   for (const PfvUnseenWall& wall : walls) {
     std::ostringstream text;
     text.precision(3);
     if (!wall.surface.empty()) {
-      const double part = part_beyond(wall.surface[0], container, packing);
+      const double part = part_beyond(wall.surface[0], container, packing, ranks);
       if (part < noticed) continue;
       text << "wall '" << wall.id << "' cuts off " << 100.0 * part << " % of what is taken as the fluid's room, where no grain "
            << "can be and water flows without resistance" << remedy(container, wall);
     } else {
       const Deepest deepest = deepest_in(container, wall.triangles);
-      if (deepest.depth <= touching * packing.radii.mean()) continue;
+      if (deepest.depth <= touching * mean_radius) continue;
       text << "mesh '" << wall.id << "' stands in the fluid, which does not see it: it reaches " << deepest.depth
            << " m into it at (" << deepest.place.transpose() << "); water flows through it, and it displaces none"
            << remedy(container, wall);

@@ -3,6 +3,7 @@
 #ifndef LMP_PFV_UNSEEN_WALLS_H
 #define LMP_PFV_UNSEEN_WALLS_H
 
+#include "flow_ranks.h"
 #include "found_walls.h"
 
 #include "pfv/container.hpp"
@@ -26,9 +27,10 @@ std::vector<PfvUnseenWall> walls_beside_the_faces(class LAMMPS* lmp, int groupbi
 
 /// A warning for each wall that takes room from the fluid in the container, which the fluid does not know: by a part of
 /// its volume, or a mesh by how deep it reaches into it. `packing`: the grains, which are on the fluid's side of a
-/// primitive wall.
+/// primitive wall; `ranks`: those that have some.
 std::vector<std::string> warnings_of_unseen_walls(const std::vector<PfvUnseenWall>& walls,
-                                                  const pfv::Container& container, const pfv::Packing& packing);
+                                                  const pfv::Container& container, const pfv::Packing& packing,
+                                                  const PfvFlowRanks& ranks);
 
 }  // namespace LAMMPS_NS
 

@@ -16,7 +16,8 @@ def liggghts_words(script, variables=None, log=None, ranks=1, program=BIN / "lig
     for name, value in (variables or {}).items():
         words += ["-var", name, text_of(value)]
     if ranks > 1:
-        words = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(ranks)] + words
+        words = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1",
+                 "-np", str(ranks)] + words
     return words
 
 

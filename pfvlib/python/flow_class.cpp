@@ -104,7 +104,7 @@ dt: s; 0, unless the fluid is compressible)";
 const char* const limit_text =
     R"(Limit of the explicit coupling of the last packing, s; inf where nothing resists.
 
-masses: N, kg; pistons: as for `advance`. Cost: some 15 to 30 solves for a new network.)";
+masses: N, kg; pistons: as for `advance`. Cost: some 15 to 35 solves for a new network.)";
 
 void add_steps(py::class_<FlowHost>& flow) {
   flow.def("advance",

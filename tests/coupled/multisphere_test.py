@@ -103,7 +103,7 @@ class Multisphere(CoupledTest):
 
     def test_limit_is_that_of_the_body(self):
         """Twice the mass over the drag of the body's translation bounds it from above; that of a rotation, or of
-        both together, may be the larger one."""
+        both together, may be the larger one. LIGGGHTS finds the mass by a million random points: to some 0.1 %."""
         around = CLOSE.replace("0.04", "0.02")  # the body lies elsewhere on two ranks
         for ranks, faces in ((1, CLOSE), (1, around), (2, around)):
             with self.subTest(ranks=ranks, faces=faces):
@@ -113,7 +113,7 @@ class Multisphere(CoupledTest):
                 rows = list(read_dump(self.folder / "d.dump").values())[-1]
                 force = abs(sum(row[9] for row in rows.values()))
                 upper = 2 * 1000 * UNION_OF_PAIR * 1e-3 / force
-                self.assertLess(limit, upper)
+                self.assertLess(limit, 1.004 * upper)
                 self.assertGreater(limit, upper / 2)
                 self.assertIn("times the limit of the explicit coupling", screen)
                 self.assertIn("`coupling staged`", screen)

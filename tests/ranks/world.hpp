@@ -4,6 +4,7 @@
 #include "distributed/packing_parts.hpp"
 #include "distributed/sphere_records.hpp"
 #include "parallel/ranks.hpp"
+#include "pfv/ranks.hpp"
 #include "pfv/packing.hpp"
 #include "support/packings.hpp"
 
@@ -22,7 +23,7 @@ inline std::vector<int> own_columns(const pfv::PackingArrays& packing, Deal deal
   const pfv::Ranks& ranks = *world();
   std::vector<int> columns;
   std::vector<int> rank_of(static_cast<std::size_t>(packing.ids.size()), 0);
-  if (deal == Deal::by_place) rank_of = pfv::ranks_by_place(packing.positions, ranks);
+  if (deal == Deal::by_place) rank_of = pfv::parts_by_place(packing.positions, ranks);
   support::Random random(7);
   if (deal == Deal::at_random)
     for (int& rank : rank_of) rank = std::min(ranks.count() - 1, static_cast<int>(random(0.0, ranks.count())));

@@ -90,7 +90,7 @@ class Flow final : public FlowModel {
   double plane_pressure(int axis, double position) const override;
   /// Mean over all pores, weighted with their volume.
   double mean_pressure() const override;
-  /// dt < 2 / lambda_max(M^-1 S G^-1 E). Cost: some 15 to 30 solves for a new network, none where the
+  /// dt < 2 / lambda_max(M^-1 S G^-1 E). Cost: some 15 to 35 solves for a new network, none where the
   /// limit of this network is known.
   double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons = {},
                          const std::vector<RigidBody>& bodies = {}) override;

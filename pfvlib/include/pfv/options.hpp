@@ -132,6 +132,15 @@ struct Options {
   bool open_water = true;
 };
 
+/// Which of a host's ranks hold the flow. `automatic`: all, where that is asked for by `solver amg` and nothing needs one.
+enum class FlowRanks { automatic, one, all };
+template <>
+struct Names<FlowRanks> {
+  static constexpr const char* what = "choice of ranks";
+  static constexpr std::array<Named<FlowRanks>, 3> all{
+      {{FlowRanks::automatic, "auto"}, {FlowRanks::one, "one"}, {FlowRanks::all, "all"}}};
+};
+
 /// When and how a host that moves the grains asks for forces.
 struct StepSettings {
   Coupling coupling = Coupling::explicit_step;
@@ -141,6 +150,7 @@ struct StepSettings {
   std::optional<double> couple_error = 1e-3;
   double safety = 1.0;  ///< part of the explicit limit that a step may reach, > 0
   bool time_step_check = true;
+  FlowRanks ranks = FlowRanks::automatic;
 };
 
 /// Throws InputError for options that are unknown or contradict each other, or a step of this kind.

@@ -16,6 +16,7 @@
 #include "pfv/options.hpp"
 #include "pfv/packing.hpp"
 #include "pfv/packing_file.hpp"
+#include "pfv/ranks.hpp"
 #include "pfv/report.hpp"
 #include "pfv/settings.hpp"
 #include "pfv/solve_interval.hpp"

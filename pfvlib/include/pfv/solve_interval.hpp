@@ -52,6 +52,12 @@ class SolveInterval {
   /// what the last solve said of the change in time stays.
   void put_on_network(const Forces& forces, const std::vector<Eigen::Vector3d>& faces);
 
+  /// All that is remembered of each grain of the last solve, a column each, and the same where a host has dealt the
+  /// grains to its ranks anew: `ids` are this rank's now. Where they are others than at the last solve all is forgotten,
+  /// and there are no rows.
+  Eigen::MatrixXd memory_of_grains(const Packing::Ids& ids);
+  void remember_grains(const Packing::Ids& ids, const Eigen::MatrixXd& memory);
+
   int steps() const { return steps_; }       ///< from the last solve to the next
   const HeldLoads& held() const { return held_; }
   double error() const { return error_; }    ///< of the last solve, over the load
@@ -87,6 +93,8 @@ class SolveInterval {
     double face, grain;  ///< N
   };
   static Loads loads_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces);
+  Eigen::Index rows_of_memory() const;
+  void forget_others(const Packing::Ids& ids);
   double root_mean_square(const Eigen::Matrix3Xd& grains) const;
   double size_of(const Difference& difference, const Scales& scales) const;
   double error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales) const;

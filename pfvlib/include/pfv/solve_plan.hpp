@@ -52,6 +52,10 @@ class SolvePlan {
   /// fourth network; one solve more where a network is taken up.
   void take(FlowModel& flow, const SolvedInstant& now);
 
+  /// See SolveInterval.
+  Eigen::MatrixXd memory_of_grains(const Packing::Ids& ids) { return interval_.memory_of_grains(ids); }
+  void remember_grains(const Packing::Ids& ids, const Eigen::MatrixXd& memory) { interval_.remember_grains(ids, memory); }
+
   const NextSolve& next() const { return next_; }
   const SolveInterval& interval() const { return interval_; }
 

@@ -3,6 +3,7 @@
 
 #include "distributed/sphere_records.hpp"
 #include "pfv/error.hpp"
+#include "pfv/ranks.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -81,7 +82,7 @@ Eigen::VectorXd cuts_of(const std::vector<RankGroup>& groups, const std::vector<
 
 }  // namespace
 
-std::vector<int> ranks_by_place(const Eigen::Ref<const Eigen::Matrix3Xd>& places, const Ranks& ranks) {
+std::vector<int> parts_by_place(const Eigen::Ref<const Eigen::Matrix3Xd>& places, const Ranks& ranks) {
   std::vector<RankGroup> groups{{0, ranks.count()}};
   std::vector<int> group_of(static_cast<std::size_t>(places.cols()), 0);
   while (std::any_of(groups.begin(), groups.end(), [](const RankGroup& g) { return g.last - g.first > 1; })) {
@@ -117,7 +118,7 @@ PackingParts::PackingParts(const Packing& rows, const Ranks& ranks)
       if (!rows.positions.col(k).allFinite())
         throw InputError("sphere " + std::to_string(rows.ids[k]) + ": its position is not finite", {{rows.ids[k]}, {}});
   });
-  const std::vector<int> rank_of = ranks_by_place(rows.positions, ranks);
+  const std::vector<int> rank_of = parts_by_place(rows.positions, ranks);
   for (std::size_t k = 0; k < rank_of.size(); ++k) sent_[rank_of[k]].push_back(static_cast<int>(k));
   deal(rows);
 }

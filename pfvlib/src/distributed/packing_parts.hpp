@@ -9,7 +9,7 @@
 namespace pfv {
 
 /// Spheres that several ranks have in any order, dealt out by place: each rank gets those in a box of its own, about
-/// as many as the others (recursive bisection across the longest edge of what is to be divided).
+/// as many as the others (parts_by_place).
 class PackingParts {
  public:
   /// `rows`: what this rank has at first. Throws InputError for positions that are not finite. Collective.
@@ -28,8 +28,5 @@ class PackingParts {
   PackingArrays own_;
   Eigen::Index rows_ = 0;
 };
-
-/// The rank of each place by that bisection. Collective.
-std::vector<int> ranks_by_place(const Eigen::Ref<const Eigen::Matrix3Xd>& places, const Ranks& ranks);
 
 }  // namespace pfv

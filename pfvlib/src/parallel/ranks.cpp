@@ -2,6 +2,7 @@
 #include "parallel/ranks.hpp"
 
 #include "pfv/error.hpp"
+#include "pfv/ranks.hpp"
 
 #include <exception>
 #include <new>
@@ -60,6 +61,8 @@ Ranks::Bytes outcome_of(const std::function<void()>& part) {
 }
 
 }  // namespace
+
+bool failed_together(const Ranks& ranks) { return ranks.failed_together(); }
 
 void Ranks::together(const std::function<void()>& part) const {
   const Bytes outcome = outcome_of(part);

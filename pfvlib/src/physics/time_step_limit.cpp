@@ -33,7 +33,7 @@ Eigen::VectorXd pseudo_random(Eigen::Index size) {
 
 double largest_eigenvalue(const VectorMap& symmetric, const Eigen::VectorXd& start, const Product& product) {
   constexpr int most = 100;
-  constexpr double settled = 5e-3, nothing = 1e-14;
+  constexpr double settled = 1e-3, nothing = 1e-14;
   Eigen::VectorXd before = Eigen::VectorXd::Zero(start.size()), v = start;
   std::vector<double> diagonal, beside;
   double length = std::sqrt(product(v, v)), eigenvalue = 0.0, residual = 0.0;

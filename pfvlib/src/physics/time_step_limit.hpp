@@ -13,9 +13,8 @@ using Product = std::function<double(const Eigen::VectorXd&, const Eigen::Vector
 Eigen::VectorXd pseudo_random(Eigen::Index size);
 
 /// Largest eigenvalue of a symmetric operator without negative ones (1/s of the drag M^-1/2 S G^-1 S^T M^-1/2), by
-/// Lanczos' iteration from `start` until the residual of its pair is below 0.5 % of it; that is added, so that a limit
-/// made of it is up to 0.5 % short, not too long (Parlett 1998, sec. 13.2). Cost: some 15 to 30 applications, at most
-/// 100. `product`: inner product of two vectors; several ranks each have a part of them, and the product of all.
+/// Lanczos' iteration from `start` until the residual of its pair is below 0.1 % of it, which is added: a limit made of
+/// it is rather short than long (Parlett 1998, sec. 13.2). Cost: some 15 to 35 applications, at most 100. `product`: inner product of two vectors; several ranks each have a part of them, and the product of all.
 double largest_eigenvalue(
     const VectorMap& symmetric, const Eigen::VectorXd& start,
     const Product& product = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.dot(b); });

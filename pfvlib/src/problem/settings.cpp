@@ -228,6 +228,7 @@ Setting couple_every() {
 
 //                 command fix modify of_grid python
 constexpr Hosts command{true, false, false, false}, fix{false, true, false, false},
+    fix_alone{false, true, false, false, false},
     both{true, true, false, false}, both_and_modify{true, true, true, false},
     modify_alone{false, false, true, false}, in_model{false, false, false, true},
     command_and_in_model{true, false, false, true}, python_alone{false, false, false, false, true};
@@ -323,6 +324,10 @@ std::vector<Setting> of_solver() {
       number(row("Solver", "threads", "threads that share a rebuild or step, 1 to 64; they change no result", both,
                  any_model),
              "number of threads", "N", "", demands::threads, option(&Options::threads)),
+      choice(row("Solver", "ranks",
+                 "of LIGGGHTS' ranks those that hold the flow; auto: all with `solver amg` where nothing needs one",
+                 fix_alone, pores),
+             "choice of ranks", step(&StepSettings::ranks)),
   };
 }
 
@@ -337,7 +342,7 @@ std::vector<Setting> of_steps() {
       choice(row("Steps", "coupling", "how forces act over a time step", fix, any_model), "coupling",
              step(&StepSettings::coupling)),
       yes_or_no(row("Steps", "time_step_check", "find the limit of the time step at the setup of a run",
-                    {false, true, false, false, false}, any_model),
+                    fix_alone, any_model),
                 "check of the time step", step(&StepSettings::time_step_check)),
       number(row("Steps", "safety", "part of the explicit limit that a time step may reach", modify_alone, any_model),
              "safety factor", "ZETA", "", demands::positive, step(&StepSettings::safety)),

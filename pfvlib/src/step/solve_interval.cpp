@@ -139,8 +139,7 @@ void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
                          const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
                          double face_area, double section, int most,
                          bool new_network, double answer) {
-  const bool others = last_ && (ids.size() != last_->ids.size() || ids != last_->ids);
-  if (ranks_ ? ranks_->any(others) : others) restart();
+  forget_others(ids);
   Loads loads = loads_of(forces, faces);
   const Scales scales = scales_of(forces, faces, face_load, face_area, section);
   if (last_ && new_network) {
@@ -158,6 +157,47 @@ void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
   held_.face_slope = goes_on ? trend_->faces : std::vector<Eigen::Vector3d>(faces.size(), Eigen::Vector3d::Zero());
   const int last_steps = last_ ? last_->steps : 1;
   last_ = Solve{ids, std::move(loads), last_steps};
+}
+
+/// Another set of grains begins anew, on all ranks.
+void SolveInterval::forget_others(const Packing::Ids& ids) {
+  const bool others = last_ && (ids.size() != last_->ids.size() || ids != last_->ids);
+  if (ranks_ ? ranks_->any(others) : others) restart();
+}
+
+Eigen::MatrixXd SolveInterval::memory_of_grains(const Packing::Ids& ids) {
+  forget_others(ids);
+  Eigen::MatrixXd memory(rows_of_memory(), ids.size());
+  if (!last_) return memory;
+  Eigen::Index row = 0;
+  const auto put = [&](const auto& columns) {
+    memory.middleRows(row, columns.rows()) = columns;
+    row += columns.rows();
+  };
+  put(last_->loads.grains);
+  if (trend_) put(trend_->grains);
+  for (const Difference* missed : {&missed_.held, &missed_.continued})
+    if (!missed->faces.empty()) put(missed->grains);
+  return memory;
+}
+
+Eigen::Index SolveInterval::rows_of_memory() const {
+  const auto of_missed = [](const Difference& missed) { return missed.faces.empty() ? 0 : 3; };
+  return !last_ ? 0 : 6 + (trend_ ? 6 : 0) + of_missed(missed_.held) + of_missed(missed_.continued);
+}
+
+void SolveInterval::remember_grains(const Packing::Ids& ids, const Eigen::MatrixXd& memory) {
+  if (!last_) return;
+  Eigen::Index row = 0;
+  const auto take = [&](auto& columns) {
+    columns = memory.middleRows(row, columns.rows());
+    row += columns.rows();
+  };
+  last_->ids = ids;
+  take(last_->loads.grains);
+  if (trend_) take(trend_->grains);
+  for (Difference* missed : {&missed_.held, &missed_.continued})
+    if (!missed->faces.empty()) take(missed->grains);
 }
 
 void SolveInterval::put_on_network(const Forces& forces, const std::vector<Eigen::Vector3d>& faces) {

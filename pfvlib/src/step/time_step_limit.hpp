@@ -14,7 +14,7 @@ namespace pfv {
 /// The limit of the explicit step, dt < 2 / lambda_max(M^-1 S G^-1 S^T), kept while factor, masses and R stay.
 class TimeStepLimit {
  public:
-  /// s; infinite where nothing resists. `masses` of the packing's spheres, kg. Cost: some 15 to 30 solves,
+  /// s; infinite where nothing resists. `masses` of the packing's spheres, kg. Cost: some 15 to 35 solves,
   /// none when it is kept. Throws InputError.
   double of(BuiltNetwork& built, const Problem& problem, Eigen::Index spheres,
             const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,

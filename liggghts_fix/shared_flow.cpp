@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `fix pfv`: which ranks hold the flow, and which grains each of them has in it.
+#include "fix_pfv.h"
+
+#include "pfv/error.hpp"
+#include "pfv/ranks.hpp"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_property_atom.h"
+
+#include <mpi.h>
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace LAMMPS_NS {
+
+/// What of this scene several ranks cannot do together yet; empty where there is nothing.
+std::string FixPfv::needs_one_rank() const {
+  const pfv::Options& options = settings_.options;
+  if (settings_.model != pfv::Model::pores) return "model darcy_grid";
+  if (settings_.steps.coupling != pfv::Coupling::explicit_step) return "coupling other than explicit";
+  if (settings_.fluid.bulk_modulus) return "bulk_modulus";
+  if (options.shear_viscous) return "shear_viscous";
+  if (options.rebuild_lag > 0) return "rebuild_lag";
+  if (options.volume_rates == pfv::VolumeRates::geometric) return "volume_rates geometric";
+  if (options.solver != pfv::SolverKind::amg && options.solver != pfv::SolverKind::automatic)
+    return std::string("solver ") + name_of(options.solver);
+  if (cell_.any()) return "periodic sides";
+  if (!settings_.obstacles.empty()) return "obstacle";
+  if (settings_.fields) return "output";
+  if (others_.rigid_bodies) return "rigid bodies";
+  return {};
+}
+
+/// Once, when the first run begins: the flow does not move from one rank to all.
+void FixPfv::choose_ranks() {
+  const bool several = comm->nprocs > 1;
+  const pfv::FlowRanks wanted = settings_.steps.ranks;
+  const bool asked = wanted == pfv::FlowRanks::all ||
+                     (wanted == pfv::FlowRanks::automatic && settings_.options.solver == pfv::SolverKind::amg);
+  const std::string reason = needs_one_rank();
+  if (several && !reason.empty() && (ranks_.are_all() || (!ranks_.dealt.chosen && wanted == pfv::FlowRanks::all)))
+    stop(FLERR, reason + " needs the flow on one rank; leave it out, or give `ranks one`");
+  if (ranks_.dealt.chosen) return;
+  ranks_.dealt.chosen = true;
+  if (!several || !asked) return;
+  const std::string beginning = "Fix pfv (id " + std::string(id) + "): the flow is ";
+  if (!reason.empty()) return print(beginning + "on one rank: " + reason + " needs that\n");
+  print(beginning + "shared by " + std::to_string(comm->nprocs) + " ranks\n");
+  ranks_.share();
+  schedule_.share_among(ranks_.library());
+}
+
+int FixPfv::home_column() const {
+  return settings_.steps.couple_error ? PfvGrainExchange::width_with_slopes : PfvGrainExchange::returned_width;
+}
+
+PfvHomes FixPfv::homes() const {
+  if (!ranks_.are_all()) return {};
+  return {per_atom_->array_atom, home_column()};
+}
+
+/// How far the parts reach, m3: the boxes around the grains of each rank, within the container, added up.
+double FixPfv::spread() const {
+  const pfv::Packing packing = grains_.packing();
+  if (packing.size() == 0) return ranks_.sum(0.0);
+  Eigen::Matrix3Xd places = packing.positions;
+  if (container_.face_count() > 0)
+    for (int axis = 0; axis < 3; ++axis)
+      places.row(axis) = places.row(axis).cwiseMax(container_.lower[axis]).cwiseMin(container_.upper[axis]);
+  const double diameter = 2.0 * packing.radii.maxCoeff();
+  const Eigen::Vector3d reach = places.rowwise().maxCoeff() - places.rowwise().minCoeff();
+  return ranks_.sum((reach.array() + diameter).prod());
+}
+
+/// Where grains have come that have no home yet, or have strayed so far that the parts overlap. The latter is looked at
+/// where there is a new network, and costs another one. Collective, after the grains have been gathered.
+void FixPfv::deal_where_due() {
+  constexpr double strayed = 1.3;
+  if (!ranks_.are_all()) return;
+  const PfvHomes known = homes();
+  bool homeless = ranks_.dealt.wanted;
+  for (int i = 0; i < atom->nlocal && !homeless; ++i) homeless = (atom->mask[i] & groupbit) && !known.is_known(i);
+  const std::int64_t network = flow_ ? flow_->retriangulations() : 0;
+  const bool is_new = network != ranks_.dealt.network;
+  ranks_.dealt.network = network;
+  if (ranks_.any(homeless) || (is_new && spread() > strayed * ranks_.dealt.spread)) deal_anew();
+}
+
+/// Each grain to the part that it is in now, and what is remembered of it.
+void FixPfv::deal_anew() {
+  const std::vector<double> places = grains_.at_atoms(since_.grains.columns(grains_.packing().ids));
+  const Eigen::MatrixXd memory = schedule_.memory_of_grains(grains_.packing().ids);
+  const bool remembers = memory.rows() > 0;
+  const std::vector<double> loads = remembers ? grains_.at_atoms(memory) : std::vector<double>{};
+  grains_.deal(homes(), *ranks_.library());
+  grains_.gather(others_.groups, needs_forces(), {}, homes());
+  const pfv::Packing::Ids ids = grains_.packing().ids;
+  since_.grains = PfvSnapshot::of_columns(ids, grains_.at_homes(places, PfvSnapshot::width));
+  if (remembers) schedule_.remember_grains(ids, grains_.at_homes(loads, static_cast<int>(memory.rows())));
+  ranks_.dealt.wanted = false;
+  ranks_.dealt.spread = spread();
+}
+
+/// Known to all, or of this rank alone, which ends the others.
+void FixPfv::fail_on_flow(const std::exception& problem) {
+  if (pfv::failed_together(*ranks_.library())) {
+    const auto* error_of_library = dynamic_cast<const pfv::Error*>(&problem);
+    const bool drawn = settings_.culprits && error_of_library;
+    const pfv::PackingArrays named = drawn ? grains_named(error_of_library->culprits().spheres) : pfv::PackingArrays{};
+    stop(FLERR, with_culprits(problem, named.view()));
+  }
+  if (!ranks_.is_first()) std::this_thread::sleep_for(std::chrono::seconds(1));  // the first one's text stands first
+  const std::string message = "Fix pfv (id " + std::string(id) + "): " + problem.what();
+  error->one(FLERR, message.c_str());
+}
+
+/// Those of all ranks, on rank 0.
+pfv::PackingArrays FixPfv::grains_named(const std::vector<std::int64_t>& tags) const {
+  constexpr int width = 5;
+  const pfv::Packing packing = grains_.packing();
+  std::vector<double> rows;
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    if (std::find(tags.begin(), tags.end(), packing.ids[k]) == tags.end()) continue;
+    rows.push_back(static_cast<double>(packing.ids[k]));
+    rows.insert(rows.end(), packing.positions.col(k).begin(), packing.positions.col(k).end());
+    rows.push_back(packing.radii[k]);
+  }
+  const std::vector<double> all = ranks_.gathered(rows);
+  const Eigen::Map<const Eigen::MatrixXd> columns(all.data(), width, static_cast<Eigen::Index>(all.size()) / width);
+  pfv::PackingArrays named;
+  named.ids = columns.row(0).cast<std::int64_t>();
+  named.positions = columns.middleRows<3>(1);
+  named.radii = columns.row(4);
+  return named;
+}
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The flow on all ranks: what one rank finds, however the grains are spread, dealt and carried about."""
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from coupled import EDGE, HANG, HERE, CoupledTest, dump, faces, forces, largest_difference, liggghts_words, one_thread
+from coupled import packing, random_velocities, read_dump, read_thermo, restarted_head, write_data
+from plates import square, write_plate
+
+SHARED = "solver amg tolerance 1e-11 ranks all"
+ALONE = SHARED.replace("all", "one")
+SEEPAGE = "viscosity 0.01 " + faces(zlo="pressure 10", zhi="pressure 0")
+THERMO = ("thermo_style custom step f_flow f_flow[1] f_flow[2] f_flow[3] f_flow[4] f_flow[5] "
+          "f_flow[6] f_flow[7] f_flow[8] f_flow[10]\nthermo_modify norm no format float %.15g\nthermo 1\n")
+HEAD = "include in.packing\n"
+ALONG = "neigh_modify exclude type 1 1\n"  # grains pass through each other
+
+
+class SharedFlow(CoupledTest):
+    def setUp(self):
+        super().setUp()
+        write_data(self.folder, packing(5), random_velocities(packing(5)))
+
+    def run_on(self, ranks, fix, commands, head=HEAD):
+        """(rows of thermo, {step: grains}) of a run whose fix is `fix` with the flow on these ranks."""
+        words = SHARED if ranks > 1 else ALONE
+        self.liggghts(head + f"fix flow all pfv {fix} {words}\n" + THERMO + dump("d.dump") + commands, ranks=ranks)
+        return read_thermo((self.folder / "log.liggghts").read_text()), read_dump(self.folder / "d.dump")
+
+    def compare(self, fix, commands, head=HEAD, ranks=(3,), within=1e-8):
+        """Runs on one rank and on several; returns the rows and the grains of one rank."""
+        rows, steps = self.run_on(1, fix, commands, head)
+        for count in ranks:
+            others, grains = self.run_on(count, fix, commands, head)
+            self.assertEqual(len(others), len(rows))
+            for row, other in zip(rows, others):
+                for name in ("flow", "flow[1]", "flow[2]", "flow[7]"):
+                    self.assertAlmostEqual(other[name], row[name], delta=within * max(1e-6, abs(row[name])), msg=name)
+                for name in ("Step", "flow[5]", "flow[8]", "flow[10]"):
+                    self.assertEqual(other[name], row[name], name)
+                self.assertLess(abs(other["flow[3]"]), 1e-9)
+                self.assertLess(other["flow[4]"], 1e-12)
+                self.assertAlmostEqual(other["flow[6]"], row["flow[6]"], delta=5e-3 * row["flow[6]"])
+            self.assertEqual(grains.keys(), steps.keys())
+            for step, of_step in grains.items():
+                self.assertLess(largest_difference(forces(of_step), forces(steps[step])), within)
+        return rows, steps
+
+    def test_forces_pressures_and_torques_of_a_bed_in_motion(self):
+        rows, steps = self.compare(SEEPAGE + " torques yes couple_every 1", "run 5\n", ranks=(2, 4))
+        grains = self.run_on(4, SEEPAGE + " torques yes couple_every 1", "run 5\n")[1]
+        for step, of_step in grains.items():
+            largest = max(abs(value) for row in steps[step].values() for value in row[13:16])
+            for tag, row in of_step.items():
+                self.assertAlmostEqual(row[10], steps[step][tag][10], delta=1e-8)
+                for found, expected in zip(row[13:16], steps[step][tag][13:16]):
+                    self.assertAlmostEqual(found, expected, delta=1e-7 * largest)
+
+    def test_grains_that_migrate_at_each_step(self):
+        """They fall as one body through the sub-domains of four ranks, which are cut along the way, and the box with
+        them; at the end most are on another rank than the one that has them in the flow."""
+        grains = packing(5)
+        write_data(self.folder, grains, {grain[0]: (0.0, 0.0, 40.0) for grain in grains})
+        head = (HEAD.replace("include in.packing\n", "processors 1 1 *\ninclude in.packing\n") +
+                "neigh_modify delay 0 every 1\n")
+        box = SEEPAGE.replace("face zhi plane 0.1", "face zhi extent").replace("face zlo plane 0.0", "face zlo extent")
+        rows, steps = self.compare(box + " couple_every 1", "run 60\n", head=head, ranks=(4,))
+        self.assertGreater(min(row[2] for row in steps[60].values()), 0.02)
+
+    def test_mean_velocities_over_several_steps_and_intervals_of_its_own(self):
+        for words in ("couple_every 4", "couple_every auto error 0.1"):
+            rows, steps = self.compare(SEEPAGE + " " + words, "run 24\n")
+        self.assertIn(0, {row["flow[10]"] for row in rows})
+
+    def test_networks_made_anew(self):
+        rows, steps = self.compare(SEEPAGE + " couple_every 1 retriangulate 2e-4", "run 20\n")
+        self.assertGreater(rows[-1]["flow[5]"], 3)
+
+    def test_strayed_grains_are_dealt_anew_within_a_run(self):
+        """Half of the bed runs through the other: the parts overlap more and more."""
+        grains = packing(5)
+        write_data(self.folder, grains,
+                   {grain[0]: (3.0 if grain[0] % 2 else -3.0, 0.0, 0.0) for grain in grains})
+        head = HEAD + ALONG
+        for words in ("couple_every 3", "couple_every auto error 5"):
+            one, four = (self.run_on(ranks, SEEPAGE + " " + words, "run 300\n", head)[1] for ranks in (1, 4))
+            # to deal grains anew makes a network anew: forces are the same within what networks differ by
+            self.assertLess(largest_difference(forces(four[300]), forces(one[300])), 0.05)
+
+    def test_insertion_and_deletion(self):
+        commands = ("run 3\ngroup some id 7 60 61\ndelete_atoms group some compress no\nrun 3\n"
+                    "create_atoms 1 single 0.05 0.05 0.099\nset atom 126 diameter 0.004 density 2600\nrun 3\n")
+        rows, steps = self.compare(SEEPAGE + " couple_every 2", commands)
+        self.assertEqual(len(steps[9]), 123)
+
+    def test_grains_inserted_within_a_run(self):
+        head = HEAD + ("fix pts all particletemplate/sphere 15485863 atom_type 1 density constant 2600 radius constant "
+                       "0.003\nfix pdd all particledistribution/discrete 15485867 1 pts 1.0\n"
+                       "region above block 0 0.1 0 0.1 0.1 0.14 units box\n"
+                       "fix ins all insert/pack seed 32452843 distributiontemplate pdd insert_every 5 overlapcheck yes "
+                       "all_in yes vel constant 0 0 -1.0 region above particles_in_region 6\n")
+        box = SEEPAGE.replace("face zhi plane 0.1", "face zhi plane 0.14")
+        self.run_on(4, box + " couple_every 2", "run 30\n", head)
+        steps = read_dump(self.folder / "d.dump")
+        self.assertGreater(len(steps[30]), 130)
+        for row in steps[30].values():
+            self.assertGreater(sum(abs(value) for value in row[7:10]), 0.0)
+
+    def test_faces_that_follow_grains_and_meshes(self):
+        write_plate(self.folder / "lid.stl", square(EDGE, EDGE))
+        head = HEAD + ("fix lid all mesh/surface/stress file lid.stl type 1\n"
+                       "fix lidw all wall/gran model hooke/stiffness tangential history mesh n_meshes 1 "
+                       "meshes lid\nfix down all move/mesh mesh lid linear 0 0 -0.01\n")
+        rows, steps = self.compare("viscosity 0.01 " + faces(zlo="extent pressure 0", zhi="mesh lid sealed") +
+                                   " couple_every 1", "run 6\n", head=head)
+        pushed = {}
+        for ranks, words in ((1, ALONE), (4, SHARED)):
+            self.liggghts(head + "fix flow all pfv viscosity 0.01 " + faces(zlo="pressure 0", zhi="mesh lid sealed") +
+                          f" couple_every 1 {words}\nthermo_style custom step f_lid[3]\n"
+                          "thermo_modify norm no format float %.15g\nthermo 1\nrun 3\n", ranks=ranks)
+            pushed[ranks] = read_thermo((self.folder / "log.liggghts").read_text())[-1]["lid[3]"]
+        self.assertGreater(pushed[1], 0.0)
+        self.assertAlmostEqual(pushed[4], pushed[1], delta=1e-8 * pushed[1])
+
+    def test_a_container_of_walls_with_variables_and_patches(self):
+        head = HEAD + ("fix side all wall/gran model hooke/stiffness tangential history primitive type 1 zcylinder 0.08 "
+                       "0.05 0.05\nvariable p equal 10+step\n")
+        fix = ("viscosity 0.01 container face bottom plane 0.05 0.05 0 0 0 1 pressure v_p face top plane 0.05 0.05 0.1 0 0 -1 "
+               "pressure 0 face side wall side couple_every 1")
+        # grains in the empty corners are braked as in open water, what neighbours give each other settled to 1e-6
+        self.compare(fix, "run 4\n", head=head, within=2e-6)
+        box = "viscosity 0.01 " + faces(zlo="pressure v_p") + " patch zhi 0.04 0.06 0.04 0.06 pressure 0 couple_every 1"
+        self.compare(box, "run 4\n", head=head)
+
+    def test_files_have_the_same_values(self):
+        fix = (SEEPAGE + " couple_every 2 profile z 8 2 p.csv flux_profile z 4 2 q.csv sensors 4 s.csv 0.05 0.05 0.03 0.02 "
+               "0.01 0.2 history 2 h.csv")
+        tables = {}
+        for ranks in (1, 3):
+            self.run_on(ranks, fix, "run 8\n")
+            tables[ranks] = {name: (self.folder / name).read_text().splitlines() for name in
+                             ("p.csv", "q.csv", "s.csv", "h.csv")}
+        for name, lines in tables[1].items():
+            self.assertEqual(tables[3][name][0], lines[0])
+            self.assertEqual(len(tables[3][name]), len(lines))
+            for found, expected in zip(tables[3][name][1:], lines[1:]):
+                for a, b in zip(found.split(","), expected.split(",")):
+                    if a or b:
+                        self.assertAlmostEqual(float(a), float(b), delta=1e-7 * max(abs(float(b)), 1e-4), msg=name)
+
+    def test_what_was_moved_between_runs_begins_anew(self):
+        commands = "run 3\nrun 0\ndisplace_atoms all move 0.0005 0 0\nrun 3\n"
+        rows, steps = self.compare(SEEPAGE + " couple_every 1", commands)
+        self.assertEqual(rows[-1]["flow[5]"], 1)
+
+    def test_ranks_without_grains(self):
+        head = "processors * 1 1\ninclude in.packing\n"
+        grains = [grain for grain in packing(5) if grain[1] < 0.03]
+        write_data(self.folder, grains, random_velocities(grains))
+        self.compare(SEEPAGE + " couple_every 1", "run 3\n", head=head, ranks=(4,))
+        write_data(self.folder, grains[:2], random_velocities(grains))  # fewer grains than ranks
+        self.compare(SEEPAGE + " couple_every 1", "run 3\n", head=head, ranks=(4,))
+
+    def test_the_same_bytes_twice_and_for_any_sub_domains(self):
+        written = []
+        for processors in ("4 1 1", "4 1 1", "1 2 2"):
+            self.run_on(4, SEEPAGE + " couple_every 1", "run 3\n", f"processors {processors}\n" + HEAD + ALONG)
+            written.append((self.folder / "d.dump").read_bytes())
+        self.assertEqual(written[0], written[1])
+        self.assertEqual(written[0], written[2])
+
+    def test_continued_and_restarted_runs_write_the_same_bytes(self):
+        for words in ("couple_every 1", "couple_every 4", "couple_every auto error 1"):
+            fix = f"fix flow all pfv {SEEPAGE} {words} {SHARED}\n"
+            self.liggghts(HEAD + fix + "run 10\nwrite_restart file.restart\n" + dump("continued.dump") + "run 10\n", ranks=3)
+            self.liggghts(restarted_head() + fix + dump("restarted.dump") + "run 10\n", ranks=3)
+            continued, restarted = ((self.folder / f"{name}.dump").read_bytes() for name in ("continued", "restarted"))
+            self.assertEqual(continued, restarted, words)
+            expected = read_dump(self.folder / "continued.dump")
+            for ranks, where in ((2, SHARED), (1, ALONE)):
+                other = f"fix flow all pfv {SEEPAGE} {words} {where}\n"
+                self.liggghts(restarted_head() + other + dump("other.dump") + "run 10\n", ranks=ranks)
+                for step, rows in read_dump(self.folder / "other.dump").items():
+                    self.assertLess(largest_difference(forces(rows), forces(expected[step])), 1e-7)
+
+    def test_auto_shares_what_amg_is_asked_for(self):
+        screen = self.liggghts(HEAD + f"fix flow all pfv {SEEPAGE} solver amg\nrun 1\n", ranks=2)
+        self.assertIn("the flow is shared by 2 ranks", screen)
+        screen = self.liggghts(HEAD + f"fix flow all pfv {SEEPAGE}\nrun 1\n", ranks=2)
+        self.assertNotIn("shared by", screen)
+        screen = self.liggghts(HEAD + f"fix flow all pfv {SEEPAGE} solver amg bulk_modulus 1e6\nrun 1\n", ranks=2)
+        self.assertIn("the flow is on one rank: bulk_modulus needs that", screen)
+
+    def test_what_ranks_cannot_share_is_refused(self):
+        for words, reason in (("bulk_modulus 1e9", "bulk_modulus"), ("coupling staged", "coupling"),
+                              ("output 10 a.pvd", "output"), ("shear_viscous yes", "shear_viscous"),
+                              ("solver cholmod", "solver cholmod")):
+            fix = f"fix flow all pfv {SEEPAGE} ranks all {words}\n"
+            self.refused(HEAD + fix + "run 0\n", reason, "ranks one", ranks=2)
+            if words.startswith("bulk"):
+                self.liggghts(HEAD + fix + "run 0\n")  # there is one only
+
+    def test_an_error_of_the_library_ends_all_with_one_line(self):
+        grains = packing(5)
+        n, x, y, z, radius = grains[7]
+        write_data(self.folder, grains + [(999, x, y, z, radius)])
+        fix = f"fix flow all pfv {SEEPAGE} {SHARED} culprits c.vtu\n"
+        self.refused(HEAD + fix + "run 0\n", "8", "999", "drawn in c.vtu", ranks=3)
+        self.assertIn('NumberOfPoints="2"', (self.folder / "c.vtu").read_text(errors="replace"))
+
+    def test_a_rank_that_is_killed_ends_all_and_leaves_what_was_written(self):
+        script = HEAD + f"fix flow all pfv {SEEPAGE} couple_every 1 {SHARED} history 1 h.csv\nrun 1000000\n"
+        (self.folder / "in.test").write_text(script)
+        shutil.copy(HERE / "in.packing", self.folder)
+        run = subprocess.Popen(liggghts_words("in.test", ranks=2), cwd=self.folder, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL, env=one_thread())
+        try:
+            history, waited = self.folder / "h.csv", 0.0
+            while waited < HANG and not (history.exists() and history.read_text().count("\n") > 5):
+                time.sleep(0.05)
+                waited += 0.05
+            os.kill(children_of(run.pid)[-1], signal.SIGKILL)
+            self.assertNotEqual(run.wait(timeout=HANG), 0)
+        finally:
+            run.kill()
+        rows = history.read_text().split("\n")
+        self.assertEqual(rows[-1], "")  # the last row is whole
+        self.assertGreater(len(rows), 6)
+        for row in rows[1:-1]:
+            self.assertEqual(row.count(","), rows[0].count(","))
+
+
+def children_of(parent):
+    """Process numbers, ascending."""
+    found = []
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            fields = (entry / "stat").read_text().rsplit(")", 1)[1].split() if entry.name.isdigit() else []
+        except OSError:  # it has ended
+            continue
+        if fields and int(fields[1]) == parent:
+            found.append(int(entry.name))
+    return sorted(found)
+
+
+if __name__ == "__main__":
+    unittest.main()
