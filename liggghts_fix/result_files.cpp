@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -112,7 +113,7 @@ void PfvRowFile::write_row(const PfvNamedRow& row) {
 }
 
 PfvResultFiles::PfvResultFiles(const PfvSettings& settings, bool are_written)
-    : fields_(settings.fields), profile_(settings.profile),
+    : are_written_(are_written), fields_(settings.fields), profile_(settings.profile),
       flux_profile_(settings.flux_profile), sensors_(settings.sensors) {
   if (settings.culprits && are_written) pfv::require_folder_of(*settings.culprits);
   if (fields_) {
@@ -133,33 +134,60 @@ void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWritt
 }
 
 void PfvResultFiles::write(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                           const Eigen::Matrix3Xd& unwrapped, std::int64_t step) {
-  if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, unwrapped, step);
+                           const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const pfv::Ranks* ranks) {
+  if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, unwrapped, step, ranks);
   if (profile_file_ && profile_file_->due(step)) profile_file_->write_row(profile_row(flow));
   if (flux_file_ && flux_file_->due(step)) flux_file_->write_row(flux_row(flow));
   if (sensor_file_ && sensor_file_->due(step)) sensor_file_->write_row(sensor_row(flow));
 }
 
-void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                                  const Eigen::Matrix3Xd& unwrapped, std::int64_t step) {
-  const std::string base = fields_->path.substr(0, fields_->path.rfind(".pvd"));
-  const auto fluid = [&](const std::string& stem, std::int64_t s) {
-    return stem + "_" + flow.field_name() + "_" + std::to_string(s) + ".vtu";
-  };
-  const auto grains = [](const std::string& stem, std::int64_t s) {
-    return stem + "_grains_" + std::to_string(s) + ".vtu";
-  };
-  pfv::write_fields(fluid(base, step), flow.fields());
-  pfv::write_spheres(grains(base, step), packing, flow.forces(), sphere_fields(flow, packing, unwrapped));
-  written_.push_back({step, flow.time()});
+namespace {
 
+std::string file_of(const std::string& stem, std::int64_t step, const std::string& what, const char* ending) {
+  return stem + "_" + what + "_" + std::to_string(step) + ending;
+}
+
+}  // namespace
+
+/// The file of a step that has been written, as the collection names it: that of one rank, or the head of pieces. A
+/// run may have been continued on another number of ranks.
+std::string PfvResultFiles::head_of(const std::string& stem, const PfvWrittenStep& one, const std::string& what) const {
+  const char* ending = std::filesystem::exists(file_of(stem, one.step, what, ".pvtu")) ? ".pvtu" : ".vtu";
+  return file_name_of(file_of(stem, one.step, what, ending));
+}
+
+void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
+                                  const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const pfv::Ranks* ranks) {
+  const std::string stem = fields_->path.substr(0, fields_->path.rfind(".pvd")), fluid = flow.field_name();
+  const auto write = [&](const std::string& what, const pfv::FieldGrid& grid) {
+    if (ranks) pfv::write_fields(file_of(stem, step, what, ".pvtu"), grid, *ranks);
+    else pfv::write_fields(file_of(stem, step, what, ".vtu"), grid);
+  };
+  write(fluid, flow.fields());
+  write("grains", pfv::grid_of_spheres(packing, flow.forces(), sphere_fields(flow, packing, unwrapped)));
+  written_.push_back({step, flow.time()});
+  if (!are_written_) return;
   std::vector<pfv::CollectionEntry> entries;
-  const std::string name = file_name_of(base);
   for (const PfvWrittenStep& one : written_) {
-    entries.push_back({one.time, 0, fluid(name, one.step)});
-    entries.push_back({one.time, 1, grains(name, one.step)});
+    entries.push_back({one.time, 0, head_of(stem, one, fluid)});
+    entries.push_back({one.time, 1, head_of(stem, one, "grains")});
   }
   pfv::write_collection(fields_->path, entries);
+}
+
+PfvSnapshot PfvResultFiles::first_places() const {
+  PfvSnapshot places;
+  for (const auto& [tag, place] : first_places_) {
+    places.tags.push_back(tag);
+    places.places.insert(places.places.end(), place.begin(), place.end());
+  }
+  return places;
+}
+
+void PfvResultFiles::set_first_places(const PfvSnapshot& places) {
+  first_places_.clear();
+  for (std::size_t k = 0; k < places.tags.size(); ++k)
+    first_places_[places.tags[k]] = Eigen::Map<const Eigen::Vector3d>(&places.places[3 * k]);
 }
 
 /// From where each grain was when it was first written, m.

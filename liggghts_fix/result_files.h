@@ -4,6 +4,7 @@
 #define LMP_PFV_RESULT_FILES_H
 
 #include "arguments.h"
+#include "grain_exchange.h"
 #include "history.h"
 
 #include "pfv/flow_model.hpp"
@@ -71,14 +72,19 @@ class PfvResultFiles {
   /// Writes what is due after a flow step, at the flow's own time: LIGGGHTS' `time` begins anew at
   /// each restart. Throws pfv::FileError.
   /// `unwrapped`: positions without the wrapping of periodic axes, which displacements are told from.
+  /// `ranks`: those that share the flow, null for one; collective among them.
   void write(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
-             std::int64_t step);
+             std::int64_t step, const pfv::Ranks* ranks);
+  /// Where these grains were when they were first written, for grains that are dealt anew.
+  PfvSnapshot first_places() const;
+  void set_first_places(const PfvSnapshot& places);
   bool history_due(std::int64_t step) { return history_file_ && history_file_->due(step); }
   void write_history(const PfvNamedRow& row) { history_file_->write_row(row); }
 
  private:
   void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
-                    std::int64_t step);
+                    std::int64_t step, const pfv::Ranks* ranks);
+  std::string head_of(const std::string& stem, const PfvWrittenStep& one, const std::string& what) const;
   PfvNamedRow profile_row(const pfv::FlowModel& flow) const;
   PfvNamedRow flux_row(const pfv::FlowModel& flow) const;
   PfvNamedRow sensor_row(const pfv::FlowModel& flow) const;
@@ -86,6 +92,7 @@ class PfvResultFiles {
                                         const Eigen::Matrix3Xd& unwrapped);
   Eigen::Matrix3Xd displacements(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped);
 
+  bool are_written_;
   std::optional<PfvFieldOutput> fields_;
   std::optional<PfvProfileOutput> profile_, flux_profile_;
   std::optional<PfvSensorOutput> sensors_;

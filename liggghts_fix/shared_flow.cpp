@@ -30,7 +30,6 @@ std::string FixPfv::needs_one_rank() const {
     return std::string("solver ") + name_of(options.solver);
   if (cell_.any()) return "periodic sides";
   if (!settings_.obstacles.empty()) return "obstacle";
-  if (settings_.fields) return "output";
   if (others_.rigid_bodies) return "rigid bodies";
   return {};
 }
@@ -94,12 +93,14 @@ void FixPfv::deal_where_due() {
 void FixPfv::deal_anew() {
   const std::vector<double> places = grains_.at_atoms(since_.grains.columns(grains_.packing().ids));
   const Eigen::MatrixXd memory = schedule_.memory_of_grains(grains_.packing().ids);
+  const std::vector<double> first_places = grains_.at_atoms(files_->first_places().columns(grains_.packing().ids));
   const bool remembers = memory.rows() > 0;
   const std::vector<double> loads = remembers ? grains_.at_atoms(memory) : std::vector<double>{};
   grains_.deal(homes(), *ranks_.library());
   grains_.gather(others_.groups, needs_forces(), {}, homes());
   const pfv::Packing::Ids ids = grains_.packing().ids;
   since_.grains = PfvSnapshot::of_columns(ids, grains_.at_homes(places, PfvSnapshot::width));
+  files_->set_first_places(PfvSnapshot::of_columns(ids, grains_.at_homes(first_places, PfvSnapshot::width)));
   if (remembers) schedule_.remember_grains(ids, grains_.at_homes(loads, static_cast<int>(memory.rows())));
   ranks_.dealt.wanted = false;
   ranks_.dealt.spread = spread();

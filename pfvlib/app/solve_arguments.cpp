@@ -308,7 +308,8 @@ void add_output_options(CLI::App& command, SolveArguments& arguments) {
                      "pores (pressure in Pa, fluid volume in m3) and throats\n"
                      "(conductance in m3/(Pa s), flux in m3/s), or cells (porosity,\n"
                      "permeability in m2, velocity in m/s) for ParaView\n"
-                     "(default: not written)")
+                     "(default: not written); on several ranks FILE.pvtu and a\n"
+                     "piece a rank")
       ->option_text("FILE.vtu")->group(group);
   repeatable(command.add_option("--obstacle", arguments.obstacles,
                                 "a body among the grains, at rest: its surface as an STL file (m), text or binary"));

@@ -12,6 +12,7 @@
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
 
+#include <filesystem>
 #include <algorithm>
 #include <iomanip>
 #include <memory>
@@ -159,10 +160,12 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Dea
   const auto write = [&] {
     if (!speaks(ranks)) return;
     if (request.report) write_report(*request.report, report);
-    if (request.vtk) write_fields(*request.vtk, flow.fields());
   };
   if (ranks) ranks->together(write);
   else write();
+  if (!request.vtk) return;
+  if (ranks) write_fields(*request.vtk, flow.fields(), *ranks);
+  else write_fields(*request.vtk, flow.fields());
 }
 
 /// The tensor stands in the report; without a gradient its error is worth a line all the same.
@@ -192,11 +195,14 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
         << one.force.transpose() << " N, moment " << one.moment.transpose() << " N m\n";
 }
 
+bool names_pieces(const std::string& path) { return std::filesystem::path(path).extension() == ".pvtu"; }
+
 void refuse_on_ranks(const SolveRequest& request) {
   if (request.settings.grid()) throw InputError("the model darcy_grid runs on one rank");
   if (!request.obstacles.empty()) throw InputError("--obstacle: a body among the grains takes one rank; run without mpirun");
-  if (request.vtk || request.culprits)
-    throw InputError("--vtk and --culprits are written by one rank; run without mpirun for them");
+  if (request.culprits) throw InputError("--culprits is written by one rank; run without mpirun for it");
+  if (request.vtk && !names_pieces(*request.vtk))
+    throw InputError("--vtk " + *request.vtk + ": each rank writes a piece; give a file .pvtu, which names them");
 }
 
 /// CPU time of all ranks, wall time of the slowest.
@@ -220,6 +226,8 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
     ranks->together([&] { refuse_on_ranks(request); });
     ranks->together(read_file);
   } else {
+    if (request.vtk && names_pieces(*request.vtk))
+      throw InputError("--vtk " + *request.vtk + ": names the pieces of several ranks; one writes a .vtu");
     read_file();
   }
   const Eigen::Index grains = read.ids.size();

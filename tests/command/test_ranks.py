@@ -5,6 +5,8 @@ import subprocess
 import unittest
 
 import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
 
 from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest
 
@@ -37,6 +39,29 @@ class Ranks(CommandTest):
             for name in ("porosity", "permeability", "permeability_error", "inflow"):
                 self.assertAlmostEqual(every[name] / one[name], 1.0, delta=1e-9, msg=name)
 
+    def test_fields_are_written_in_pieces_that_make_up_the_whole(self):
+        options = [*THROUGH_FLOW, "--solver", "amg", "--tolerance", "1e-11"]
+        self.solve(*options, "--vtk", "one.vtu")
+        done = self.on_ranks(3, "--packing", DENSE, *UNIT_BOX, *options, "--vtk", "all.pvtu")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        one, all_ = (self.read_grid(reader, name) for reader, name in
+                     ((vtkXMLUnstructuredGridReader, "one.vtu"), (vtkXMLPUnstructuredGridReader, "all.pvtu")))
+        self.assertEqual(all_.GetNumberOfCells(), one.GetNumberOfCells())
+        for what in ("volume", "conductance", "pressure"):
+            found, expected = (vtk_to_numpy(grid.GetCellData().GetArray(what)) for grid in (all_, one))
+            numpy.testing.assert_allclose(numpy.sort(found), numpy.sort(expected), rtol=1e-9, atol=1e-9 * abs(expected).max())
+        for grid in (one, all_):
+            ends = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
+            self.assertEqual(sorted(set(numpy.diff(ends))), [1, 2])
+        found, expected = (vtk_to_numpy(grid.GetPointData().GetArray("volume")).sum() for grid in (all_, one))
+        self.assertAlmostEqual(found / expected, 1.0, delta=1e-12)
+
+    def read_grid(self, reader, name):
+        reader = reader()
+        reader.SetFileName(str(self.folder / name))
+        reader.Update()
+        return reader.GetOutput()
+
     def test_an_error_is_one_line_and_leaves_no_file(self):
         done = self.on_ranks(2, "--packing", DENSE, "--box", "0", "0.5", "0", "1", "0", "1", *THROUGH_FLOW,
                              "--forces", "all.csv")
@@ -49,7 +74,7 @@ class Ranks(CommandTest):
     def test_what_one_rank_alone_can_do_is_refused(self):
         for options, words in ((["--solver", "supernodal"], "the solver supernodal runs on one rank"),
                                (["--model", "darcy_grid", "--cells", "4", "4", "4"], "darcy_grid runs on one rank"),
-                               (["--vtk", "pores.vtu"], "written by one rank")):
+                               (["--vtk", "pores.vtu"], "give a file .pvtu")):
             with self.subTest(options=options):
                 done = self.on_ranks(2, "--packing", DENSE, *UNIT_BOX, *THROUGH_FLOW, *options)
                 self.assertEqual(done.returncode, 2, done.stderr)

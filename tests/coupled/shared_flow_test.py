@@ -8,6 +8,10 @@ import subprocess
 import time
 import unittest
 
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
+
 from coupled import EDGE, HANG, HERE, CoupledTest, dump, faces, forces, largest_difference, liggghts_words, one_thread
 from coupled import packing, random_velocities, read_dump, read_thermo, restarted_head, write_data
 from plates import square, write_plate
@@ -153,6 +157,28 @@ class SharedFlow(CoupledTest):
                     if a or b:
                         self.assertAlmostEqual(float(a), float(b), delta=1e-7 * max(abs(float(b)), 1e-4), msg=name)
 
+    def test_fields_are_written_in_pieces(self):
+        """Also of grains that are dealt anew: their displacements begin where they were first written."""
+        grains = packing(4)
+        write_data(self.folder, grains, {grain[0]: (3.0 if grain[0] % 2 else -3.0, 0.0, 0.0) for grain in grains})
+        found = {}
+        for ranks in (1, 3):
+            self.run_on(ranks, SEEPAGE + " couple_every 50 output 200 f.pvd", "run 400\n", HEAD + ALONG)
+            collection = (self.folder / "f.pvd").read_text()
+            self.assertEqual(collection.count(".pvtu" if ranks > 1 else ".vtu"), 6)
+            reader = vtkXMLPUnstructuredGridReader() if ranks > 1 else vtkXMLUnstructuredGridReader()
+            reader.SetFileName(str(self.folder / f"f_grains_400.{'pvtu' if ranks > 1 else 'vtu'}"))
+            reader.Update()
+            data = reader.GetOutput().GetPointData()
+            arrays = {name: vtk_to_numpy(data.GetArray(name)) for name in
+                      ("id", "displacement", "force", "fluid_velocity", "fluid_stress")}
+            order = numpy.argsort(arrays["id"])
+            found[ranks] = {name: values[order] for name, values in arrays.items()}
+        self.assertGreater(numpy.abs(found[1]["displacement"]).min(axis=0)[0], 0.011)
+        for name, tolerance in (("id", 0), ("displacement", 1e-12), ("force", 0.05), ("fluid_velocity", 0.05), ("fluid_stress", 0.05)):
+            scale = numpy.abs(found[1][name]).max()
+            numpy.testing.assert_allclose(found[3][name], found[1][name], rtol=0, atol=tolerance * scale, err_msg=name)
+
     def test_what_was_moved_between_runs_begins_anew(self):
         commands = "run 3\nrun 0\ndisplace_atoms all move 0.0005 0 0\nrun 3\n"
         rows, steps = self.compare(SEEPAGE + " couple_every 1", commands)
@@ -198,7 +224,7 @@ class SharedFlow(CoupledTest):
 
     def test_what_ranks_cannot_share_is_refused(self):
         for words, reason in (("bulk_modulus 1e9", "bulk_modulus"), ("coupling staged", "coupling"),
-                              ("output 10 a.pvd", "output"), ("shear_viscous yes", "shear_viscous"),
+                              ("shear_viscous yes", "shear_viscous"),
                               ("solver cholmod", "solver cholmod")):
             fix = f"fix flow all pfv {SEEPAGE} ranks all {words}\n"
             self.refused(HEAD + fix + "run 0\n", reason, "ranks one", ranks=2)

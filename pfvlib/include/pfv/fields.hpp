@@ -40,4 +40,9 @@ struct FieldGrid {
 /// whole or absent. Throws FileError.
 void write_fields(const std::string& path, const FieldGrid& grid);
 
+class Ranks;
+/// The grids of all ranks: each writes a piece, STEM_RANK.vtu, and one the head that names them, STEM.pvtu, once they
+/// are there. They have the same fields. Throws FileError on all ranks, InputError for another ending. Collective.
+void write_fields(const std::string& path, const FieldGrid& grid, const Ranks& ranks);
+
 }  // namespace pfv

@@ -138,7 +138,8 @@ class Flow final : public FlowModel {
   /// the spheres.
   Report report() const override;
   /// Pores as points, a cell each (pressure, volume of the fluid, velocity), and throats as lines (conductance,
-  /// flux). Cost: as faces().
+  /// flux). On several ranks each has its own; the far ends of throats to others' pores are points without a cell and
+  /// without a volume, so that sums over all ranks are those of the whole. Cost: as faces().
   FieldGrid fields() const override;
   const char* field_name() const override { return "pores"; }
 

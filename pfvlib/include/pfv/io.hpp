@@ -46,6 +46,8 @@ const char* citation();
 /// of the packing; a field without columns is not written.
 void write_spheres(const std::string& path, const Packing& packing, const Forces& forces,
                    const std::vector<Field>& more = {});
+/// The same to be written.
+FieldGrid grid_of_spheres(const Packing& packing, const Forces& forces, const std::vector<Field>& more = {});
 
 /// The spheres and places that an error is about as points of a .vtu: id (-1 for a place) and radius (0).
 void write_culprits(const std::string& path, const Packing& packing, const Culprits& culprits);

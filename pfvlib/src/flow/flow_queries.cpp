@@ -99,19 +99,19 @@ std::int64_t Flow::hidden_or_outside() const {
 }
 
 Eigen::Matrix3Xd Flow::pore_velocities() const {
-  return pfv::pore_velocities(parts_->whole_network("the velocities in pores"), parts_->balance());
+  return pfv::pore_velocities(parts_->network(), parts_->balance());
 }
 
 Eigen::Matrix3Xd Flow::sphere_velocities() const {
-  return pfv::sphere_velocities(parts_->whole_network("the fluid's velocities at spheres"), parts_->balance(), parts_->keeper.packed());
+  return pfv::sphere_velocities(parts_->network(), parts_->balance(), parts_->keeper.packed());
 }
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_stresses() const {
-  return pfv::sphere_stresses(parts_->whole_network("the stresses of spheres"), parts_->solution, parts_->keeper.packed());
+  return pfv::sphere_stresses(parts_->network(), parts_->solution, parts_->keeper.packed());
 }
 
 std::vector<Field> Flow::sphere_fields() const {
-  return pfv::sphere_fields({parts_->whole_network("the fields of spheres"), parts_->solution, parts_->balance(), parts_->keeper.packed()});
+  return pfv::sphere_fields({parts_->network(), parts_->solution, parts_->balance(), parts_->keeper.packed()});
 }
 
 double Flow::plane_flux(int axis, double position) const {
@@ -133,7 +133,7 @@ const std::vector<double>& Flow::throat_conductances() const {
 
 std::vector<double> Flow::throat_fluxes() const { return parts_->balance().throat_fluxes; }
 
-Eigen::VectorXd Flow::pore_volumes() const { return pfv::pore_volumes(parts_->whole_network("the volumes of pores")); }
+Eigen::VectorXd Flow::pore_volumes() const { return pfv::pore_volumes(parts_->network()); }
 
 EmptySpace Flow::empty_space() const { return pfv::empty_space(parts_->network()); }
 
@@ -183,7 +183,7 @@ Report Flow::report() const {
 }
 
 FieldGrid Flow::fields() const {
-  return network_fields(parts_->whole_network("the fields"), parts_->solution, parts_->balance());
+  return network_fields(parts_->network(), parts_->solution, parts_->balance());
 }
 
 }  // namespace pfv

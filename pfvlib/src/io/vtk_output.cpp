@@ -2,10 +2,12 @@
 #include "io/atomic_file.hpp"
 #include "text/number_text.hpp"
 #include "io/vtu_file.hpp"
+#include "parallel/ranks.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace pfv {
 namespace {
@@ -40,9 +42,8 @@ std::string escaped(const std::string& text) {
   return xml;
 }
 
-}  // namespace
-
-void write_fields(const std::string& path, const FieldGrid& grid) {
+/// `with_ids`: also where there are no points to have one.
+std::string text_of(const FieldGrid& grid, bool with_ids) {
   VtuFile file(grid.points.cols(), static_cast<std::int64_t>(grid.types.size()));
   file.begin("Points");
   file.add("Points", grid.points.data(), grid.points.cols(), 3);
@@ -52,9 +53,9 @@ void write_fields(const std::string& path, const FieldGrid& grid) {
   add(file, "offsets", grid.ends);
   add(file, "types", grid.types);
   file.end("Cells");
-  if (!grid.point_ids.empty() || !grid.of_points.empty()) {
+  if (with_ids || !grid.of_points.empty()) {
     file.begin("PointData");
-    if (!grid.point_ids.empty()) add(file, "id", grid.point_ids);
+    if (with_ids) add(file, "id", grid.point_ids);
     add(file, grid.of_points);
     file.end("PointData");
   }
@@ -63,11 +64,59 @@ void write_fields(const std::string& path, const FieldGrid& grid) {
     add(file, grid.of_cells);
     file.end("CellData");
   }
-  detail::write_file(path, file.text());
+  return file.text();
 }
 
-void write_spheres(const std::string& path, const Packing& packing, const Forces& forces,
-                   const std::vector<Field>& more) {
+}  // namespace
+
+void write_fields(const std::string& path, const FieldGrid& grid) {
+  detail::write_file(path, text_of(grid, !grid.point_ids.empty()));
+}
+
+namespace {
+
+/// How an array of the pieces is told of in their head.
+std::string told(const std::string& name, const char* type, Eigen::Index components) {
+  return "<PDataArray type=\"" + std::string(type) + "\" Name=\"" + escaped(name) + "\" NumberOfComponents=\"" +
+         std::to_string(components) + "\"/>\n";
+}
+
+std::string told(const char* section, const std::vector<Field>& fields, const std::string& first = {}) {
+  std::string text = first;
+  for (const Field& field : fields) text += told(field.name, "Float64", field.values.rows());
+  return text.empty() ? text : "<" + std::string(section) + ">\n" + text + "</" + section + ">\n";
+}
+
+std::string head_of_pieces(const FieldGrid& grid, const std::vector<std::string>& pieces, bool with_ids) {
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\">\n"
+                     "<PUnstructuredGrid GhostLevel=\"0\">\n<PPoints>\n" + told("Points", "Float64", 3) + "</PPoints>\n" +
+                     told("PPointData", grid.of_points, with_ids ? told("id", "Int64", 1) : "") +
+                     told("PCellData", grid.of_cells);
+  for (const std::string& piece : pieces) text += "<Piece Source=\"" + escaped(piece) + "\"/>\n";
+  return text + "</PUnstructuredGrid>\n</VTKFile>\n";
+}
+
+}  // namespace
+
+void write_fields(const std::string& path, const FieldGrid& grid, const Ranks& ranks) {
+  const std::filesystem::path file(path);
+  ranks.together([&] {
+    if (file.extension() != ".pvtu") throw InputError("'" + path + "' does not end in .pvtu: each rank writes a piece, and that file names them");
+  });
+  const std::string stem = path.substr(0, path.rfind('.'));
+  const auto piece_of = [](const std::string& of, int rank) { return of + "_" + std::to_string(rank) + ".vtu"; };
+  const bool with_ids = ranks.any(!grid.point_ids.empty());
+  ranks.together([&] { detail::write_file(piece_of(stem, ranks.own()), text_of(grid, with_ids)); });
+  ranks.together([&] {
+    if (ranks.own() != 0) return;
+    std::vector<std::string> pieces;
+    const std::string name = file.stem().string();
+    for (int rank = 0; rank < ranks.count(); ++rank) pieces.push_back(piece_of(name, rank));
+    detail::write_file(path, head_of_pieces(grid, pieces, with_ids));
+  });
+}
+
+FieldGrid grid_of_spheres(const Packing& packing, const Forces& forces, const std::vector<Field>& more) {
   const Eigen::Index n = packing.size();
   FieldGrid grid;
   grid.points = packing.positions;
@@ -84,7 +133,12 @@ void write_spheres(const std::string& path, const Packing& packing, const Forces
   add_known("force", forces.total);
   add_known("pressure", forces.sphere_pressure.transpose());
   for (const Field& field : more) add_known(field.name, field.values);
-  write_fields(path, grid);
+  return grid;
+}
+
+void write_spheres(const std::string& path, const Packing& packing, const Forces& forces,
+                   const std::vector<Field>& more) {
+  write_fields(path, grid_of_spheres(packing, forces, more));
 }
 
 void write_culprits(const std::string& path, const Packing& packing, const Culprits& culprits) {

@@ -16,9 +16,19 @@ namespace pfv {
 
 namespace {
 
+/// Of ghosts as their owners have them, where these have all their throats; else of what is here.
 Eigen::Matrix3Xd integrals_of(const BuiltNetwork& built, const Balance& balance) {
-  return velocity_integrals(built.network, built.vertices, built.boundaries,
-                            balance.throat_fluxes, balance.contact_inflows);
+  Eigen::Matrix3Xd integrals = velocity_integrals(built.network, built.vertices, built.boundaries,
+                                                  balance.throat_fluxes, balance.contact_inflows);
+  if (built.share.ranks) built.share.pores.refresh(*built.share.ranks, integrals);
+  return integrals;
+}
+
+/// Of all pores, ghosts among them.
+Eigen::VectorXd volumes_of(const BuiltNetwork& built) {
+  Eigen::VectorXd volumes = storage_volumes(built.throats);
+  if (built.share.ranks) built.share.pores.refresh(*built.share.ranks, volumes);
+  return volumes;
 }
 
 }  // namespace
@@ -29,20 +39,24 @@ void require_axis(int axis) {
 
 Eigen::Matrix3Xd pore_velocities(const BuiltNetwork& built, const Balance& balance) {
   Eigen::Matrix3Xd velocities = integrals_of(built, balance);
-  velocities.array().rowwise() /= storage_volumes(built.throats).transpose().array();
+  const Eigen::VectorXd volumes = volumes_of(built);
+  for (Eigen::Index p = 0; p < volumes.size(); ++p)
+    if (volumes[p] > 0.0) velocities.col(p) /= volumes[p];
+    else velocities.col(p).setZero();
   return velocities;
 }
 
 Eigen::Matrix3Xd sphere_velocities(const BuiltNetwork& built, const Balance& balance,
                                    Eigen::Index packed) {
   const Eigen::Matrix3Xd integrals = integrals_of(built, balance);
-  const Eigen::VectorXd volumes = storage_volumes(built.throats);
+  const Eigen::VectorXd volumes = volumes_of(built);
   const int active = built.grains.spheres.size();
   const SurfacePressure around = built.operators.surface_pressure
                                      ? *built.operators.surface_pressure
                                      : surface_pressure(built.network, built.vertices, built.grains.spheres);
   Eigen::Matrix3Xd result = Eigen::Matrix3Xd::Zero(3, packed);
   for (int sphere = 0; sphere < active; ++sphere) {
+    if (!built.share.owns_sphere(sphere)) continue;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double volume = 0.0;
     for (int e = around.row_begin[sphere]; e < around.row_begin[sphere + 1]; ++e) {
@@ -64,7 +78,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_stresses(const BuiltNetwork& bui
                            solution.container.pressure_gradient);
   Stresses result = Stresses::Zero(6, packed);
   for (int sphere = 0; sphere < active; ++sphere)
-    result.col(built.grains.columns[sphere]) = stresses.col(sphere);
+    if (built.share.owns_sphere(sphere)) result.col(built.grains.columns[sphere]) = stresses.col(sphere);
   return result;
 }
 
