@@ -81,12 +81,12 @@ def surface(z, radius):
     return 0.8 * middle + above / ((1.0 - inner) * LENGTH * WIDTH)
 
 
-def core_porosity(grains, height):
-    """Porosity one mean diameter and more away from walls and surface, where the layers along them
-    do not count: from a grid of points."""
+def core_porosity(grains, ends):
+    """Porosity one mean diameter and more away from the walls and surface of a box from 0 to `ends`, where the layers
+    along them do not count: from a grid of points."""
     places, radius = grains[:, 2:5], grains[:, 5]
     margin, step = 2.0 * radius.mean(), radius.mean() / 8.0
-    axes = [np.arange(margin, end - margin, step) for end in (LENGTH, WIDTH, height)]
+    axes = [np.arange(margin, end - margin, step) for end in ends]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     solid = np.zeros(points.shape[:3], dtype=bool)
     for place, r in zip(places, radius):
@@ -103,5 +103,5 @@ def measure(grains):
     height = surface(z, radius)
     inner = porosity(z, radius, 0.2 * height, 0.8 * height)
     return {"height": float(height), "top": float((z + radius).max()),
-            "core_porosity": core_porosity(grains, height), "porosity": float(inner),
+            "core_porosity": core_porosity(grains, (LENGTH, WIDTH, height)), "porosity": float(inner),
             "critical_gradient": float((1 - inner) * (DENSITY - FLUID_DENSITY) / FLUID_DENSITY)}
