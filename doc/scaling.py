@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of doc/scaling.md:  doc/scaling.py [million]
+"""The tables of doc/scaling.md:  doc/scaling.py [solve] [coupled] [million]
 
-`pfv solve` of dense packings on several ranks, and on one from 25 000 grains on; with `million` up to a million, which
-takes 9 GB. Every packing is made of mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. A
-minute or two; with `million` three.
+`pfv solve` of dense packings on several ranks, and on one from 25 000 grains on; 50 coupled steps of LIGGGHTS on one and
+several ranks; all of it without a word. With `million` up to a million grains, which takes 9 GB, coupled 12. Every packing
+is made of mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some minutes; with `million`
+half an hour.
 """
 import json
 import os
@@ -17,7 +18,7 @@ import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PAGE = ROOT / "doc/scaling.md"
-PFV, MAKE = (ROOT / "build/bin" / name for name in ("pfv", "pfv_dense_packing"))
+PFV, MAKE, LIGGGHTS = (ROOT / "build/bin" / name for name in ("pfv", "pfv_dense_packing", "liggghts-pfv"))
 MPIRUN = [os.environ.get("PFV_MPIRUN", "mpirun"), "--allow-run-as-root", "--oversubscribe", "--mca",
           "mpi_yield_when_idle", "1"]
 GRAINS = 25000
@@ -104,6 +105,88 @@ def by_size(packings, empty, sizes):
     return table(["grains", "unknowns", "MB", "kB a grain", *PHASES], rows)
 
 
+SCRIPT = """units si
+atom_style granular
+atom_modify map array
+boundary f f f
+newton off
+communicate single vel yes
+read_data grains.data
+neighbor 0.004 bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype 1e7
+fix m2 all property/global poissonsRatio peratomtype 0.25
+fix m3 all property/global coefficientRestitution peratomtypepair 1 0.5
+fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep 1e-5
+fix g all gravity 9.81 vector 0 0 -1
+fix i all nve/sphere
+"""
+STEPS = 50
+
+
+def write_data(path, grains, counts):
+    """For LIGGGHTS: the grains of a packing, and room for those at the sides."""
+    with open(path, "w") as data:
+        data.write(f"grains\n\n{len(grains)} atoms\n1 atom types\n\n")
+        for axis, count in zip("xyz", counts):
+            data.write(f"-0.1 {count + 0.1} {axis}lo {axis}hi\n")
+        data.write("\nAtoms\n\n")
+        ids = numpy.arange(1, len(grains) + 1)
+        ones = numpy.ones(len(grains))
+        numpy.savetxt(data, numpy.column_stack([ids, ones, 2.0 * grains[:, 3], 2600.0 * ones, grains[:, :3]]),
+                      fmt=["%d", "%d"] + ["%.17g"] * 5)
+
+
+def run_liggghts(folder, script, ranks):
+    """What it prints, its CPU seconds and the memory of its largest rank, bytes."""
+    (folder / "in.coupled").write_text(script)
+    launch = [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []
+    command = [sys.executable, "-c", "import resource, subprocess, sys; "
+               "done = subprocess.run(sys.argv[1:], capture_output=True, text=True); "
+               "use = resource.getrusage(resource.RUSAGE_CHILDREN); "
+               "print(done.stdout[-6000:], done.stderr[-2000:], 'used', use.ru_utime + use.ru_stime, use.ru_maxrss); "
+               "sys.exit(done.returncode)", *launch, LIGGGHTS, "-in", "in.coupled"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    if done.returncode:
+        sys.exit(done.stdout + done.stderr)
+    seconds, kilobytes = done.stdout.split()[-2:]
+    return done.stdout, float(seconds), 1024.0 * float(kilobytes)
+
+
+def phase(text, name):
+    """(seconds, count) in the table at the end of a run."""
+    for line in text.splitlines():
+        words = line.split()
+        if words[:1] == [name] and len(words) == 3:
+            return float(words[1]), int(words[2])
+    sys.exit(f"no phase {name} in:\n{text}")
+
+
+def coupled(packings, sizes):
+    rows = []
+    for grains, counts in sizes.items():
+        folder = packings.folder
+        write_data(folder / "grains.data", copies(packings.block, counts), counts)
+        walls = " ".join(f"face {axis}{side} plane {count if side == 'hi' else 0} symmetry"
+                         for axis, count in zip("xyz", counts) for side in ("lo", "hi")) + " pressure 0"
+        own = {steps: run_liggghts(folder, f"{SCRIPT}run {steps}\n", 1)[1] for steps in (0, STEPS)}
+        for ranks in (1, 2, 4):
+            text, seconds, memory = run_liggghts(
+                folder, f"{SCRIPT}fix flow all pfv viscosity 1e-3 density 1000 solver amg couple_every 1 {walls}\n"
+                        f"run {STEPS}\n", ranks)
+            networks = sum(phase(text, name)[0] for name in ("triangulate", "throats", "factor"))
+            solve, solves = phase(text, "solve")
+            step = sum(phase(text, name)[0] for name in ("assemble", "solve", "forces")) / solves
+            rows.append([f"{grains}", f"{ranks}", f"{memory / 2**20:.0f}", f"{networks:.1f}",
+                         f"{phase(text, 'triangulate')[1]}", f"{step:.3f}", f"{(own[STEPS] - own[0]) / STEPS:.3f}",
+                         f"{seconds:.0f}"])
+    return table(["grains", "ranks", "MB the largest rank", "networks, s", "networks", "a flow step, s",
+                  "LIGGGHTS' own step, s", "the run in all, s"], rows)
+
+
 def replace(name, text):
     page = PAGE.read_text()
     begin, end = f"<!-- {name}: made by doc/scaling.py -->\n", "\n<!-- end -->"
@@ -111,18 +194,30 @@ def replace(name, text):
     PAGE.write_text(page[:first] + text + page[page.index(end, first - 1):])
 
 
+def memory_of_few(folder):
+    """What a process holds that has a handful of grains, MB."""
+    (folder / "few.csv").write_text("id,x,y,z,radius\n1,0.5,0.5,0.5,0.1\n2,0.2,0.2,0.2,0.1\n")
+    subprocess.run([PFV, "solve", "--packing", "few.csv", "--box", "0", "1", "0", "1", "0", "1", "--face",
+                    "zlo:pressure=0", "--face", "zhi:pressure=1", "--solver", "amg", "--report", "few.json"],
+                   cwd=folder, check=True, capture_output=True)
+    return json.loads((folder / "few.json").read_text())["peak_memory_bytes"] / 2**20
+
+
 def main():
-    with tempfile.TemporaryDirectory() as folder:
-        packings = Packings(pathlib.Path(folder))
-        # what a process holds that has a handful of grains
-        (packings.folder / "few.csv").write_text("id,x,y,z,radius\n1,0.5,0.5,0.5,0.1\n2,0.2,0.2,0.2,0.1\n")
-        subprocess.run([PFV, "solve", "--packing", "few.csv", "--box", "0", "1", "0", "1", "0", "1", "--face",
-                        "zlo:pressure=0", "--face", "zhi:pressure=1", "--solver", "amg", "--report", "few.json"],
-                       cwd=folder, check=True, capture_output=True)
-        empty = json.loads((packings.folder / "few.json").read_text())["peak_memory_bytes"] / 2**20
-        replace("ranks", by_ranks(packings, empty))
-        sizes = {**SIZES, **MILLION} if "million" in sys.argv[1:] else SIZES
-        replace("sizes", by_size(packings, empty, sizes))
+    words = set(sys.argv[1:])
+    if words - {"solve", "coupled", "million"}:
+        sys.exit(__doc__)
+    million = MILLION if "million" in words else {}
+    parts = words & {"solve", "coupled"} or {"solve", "coupled"}
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        packings = Packings(folder)
+        if "solve" in parts:
+            empty = memory_of_few(folder)
+            replace("ranks", by_ranks(packings, empty))
+            replace("sizes", by_size(packings, empty, {**SIZES, **million}))
+        if "coupled" in parts:
+            replace("coupled", coupled(packings, {size: SIZES[size] for size in (25000, 100000)} | million))
 
 
 main()

@@ -81,6 +81,17 @@ class SharedFlow(CoupledTest):
             rows, steps = self.compare(SEEPAGE + " " + words, "run 24\n")
         self.assertIn(0, {row["flow[10]"] for row in rows})
 
+    def test_staged_steps_far_above_the_limit(self):
+        head = HEAD + "fix g all gravity 9.81 vector 0 0 -1\n"
+        fix = SEEPAGE.replace("viscosity 0.01", "viscosity 1000") + " density 1000 coupling staged"
+        rows, steps = self.compare(fix, "run 4\n", head=head)
+        self.assertLess(rows[0]["flow[6]"], 1e-5 / 10)
+        found = self.run_on(3, fix, "run 4\n", head)[1]
+        for step, of_step in found.items():
+            for tag, row in of_step.items():
+                for value, expected in zip(row[4:7], steps[step][tag][4:7]):
+                    self.assertAlmostEqual(value, expected, delta=1e-9)
+
     def test_networks_made_anew(self):
         rows, steps = self.compare(SEEPAGE + " couple_every 1 retriangulate 2e-4", "run 20\n")
         self.assertGreater(rows[-1]["flow[5]"], 3)
@@ -223,7 +234,7 @@ class SharedFlow(CoupledTest):
         self.assertIn("the flow is on one rank: bulk_modulus needs that", screen)
 
     def test_what_ranks_cannot_share_is_refused(self):
-        for words, reason in (("bulk_modulus 1e9", "bulk_modulus"), ("coupling staged", "coupling"),
+        for words, reason in (("bulk_modulus 1e9", "bulk_modulus"), ("coupling implicit", "coupling implicit"),
                               ("shear_viscous yes", "shear_viscous"),
                               ("solver cholmod", "solver cholmod")):
             fix = f"fix flow all pfv {SEEPAGE} ranks all {words}\n"

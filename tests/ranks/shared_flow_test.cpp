@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -291,6 +292,45 @@ TEST(SharedFlow, StepsWithNewNetworksAsOnOneRank) {
   EXPECT_NEAR(*all.report().fluid_balance_error, *one.report().fluid_balance_error, 1e-9);
 }
 
+/// Far above the limit of explicit steps, with a piston, grains under their weight, one of them held.
+TEST(SharedFlow, StagedStepsAsOnOneRank) {
+  pfv::PackingArrays packing = moving(pfv::dense_packing(300));
+  packing.velocities *= 0.05;
+  pfv::Box box;
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.5);
+  pfv::Fluid fluid;
+  fluid.gravity = {0.0, 0.0, -9.81};
+  for (const Deal deal : {Deal::by_place, Deal::all_to_one}) {
+    const std::vector<int> columns = own_columns(packing, deal);
+    const pfv::PackingArrays part = part_of(packing, columns);
+    Eigen::VectorXd masses = 1e4 * packing.radii.array().cube();
+    masses[17] = std::numeric_limits<double>::infinity();
+    Eigen::Matrix3Xd weights = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
+    weights.row(2) = -9.81 * 1e4 * packing.radii.array().cube().transpose();
+    const Eigen::VectorXd own_masses = masses(columns);
+    const Eigen::Matrix3Xd own_weights = weights(Eigen::all, columns);
+    std::vector<pfv::Piston> pistons(6);
+    pistons[5] = {0.5, -3.0};
+    const pfv::GrainDynamics of_one{{masses.data(), masses.size()}, {weights.data(), 3, weights.cols()}, pistons};
+    const pfv::GrainDynamics of_all{{own_masses.data(), own_masses.size()}, {own_weights.data(), 3, own_weights.cols()}, pistons};
+    pfv::Flow one(box, fluid, tight()), all(box, fluid, tight(), world());
+    one.evaluate(packing.view());
+    const double dt = 30.0 * one.time_step_limit(masses, pistons);
+    for (int step = 0; step < 3; ++step) {
+      const pfv::Forces& expected = one.advance(packing.view(), dt, pfv::Step::with(pfv::Coupling::staged, of_one));
+      const pfv::Forces& found = all.advance(part.view(), dt, pfv::Step::with(pfv::Coupling::staged, of_all));
+      EXPECT_EQ(all.stages(), one.stages());
+      EXPECT_GT(one.stages(), 5);
+      EXPECT_LT(difference_of(found.total, expected.total, columns).rms, 1e-8) << "step " << step;
+      EXPECT_LT(difference_of(found.torque, expected.torque, columns).rms, 1e-8);
+    }
+    EXPECT_LT(std::abs(all.report().mass_error), 1e-9);
+    EXPECT_LT(all.report().force_balance_error, 1e-12);
+    for (std::size_t f = 0; f < 6; ++f)
+      EXPECT_LT((all.face_forces()[f] - one.face_forces()[f]).norm(), 1e-8 * one.face_forces()[4].norm());
+  }
+}
+
 TEST(SharedFlow, TheSameBytesTwice) {
   const pfv::PackingArrays packing = moving(pfv::dense_packing(300));
   const pfv::PackingArrays part = part_of(packing, own_columns(packing, Deal::by_place));
@@ -405,4 +445,9 @@ TEST(SharedFlow, WhatRanksCannotDoTogetherIsRefused) {
   pressed.rebuild();
   EXPECT_THROW(pressed.step(part.view(), 1e-3), pfv::InputError);
   EXPECT_THROW(flow.advance(part.view(), 1e-3, {pfv::Coupling::staged, nullptr, true, 1.0, {}}), pfv::InputError);
+  const Eigen::VectorXd masses = Eigen::VectorXd::Ones(part.ids.size());
+  const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, part.ids.size());
+  const pfv::GrainDynamics dynamics{{masses.data(), masses.size()}, {none.data(), 3, none.cols()}};
+  for (const pfv::Coupling coupling : {pfv::Coupling::implicit, pfv::Coupling::automatic})
+    EXPECT_THROW(flow.advance(part.view(), 1e-3, pfv::Step::with(coupling, dynamics)), pfv::InputError);
 }

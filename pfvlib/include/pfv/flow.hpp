@@ -48,7 +48,7 @@ class Flow final : public FlowModel {
  public:
   /// `ranks` (pfv/mpi.hpp): those that share the packing, null for one that has it. Then each rank calls every method,
   /// in the same order, with its own part of the packing, and gets the forces on it; balances, faces and means are
-  /// those of all, pore arrays this rank's. The solver is amg, steps are explicit. Bytes are the same on the same
+  /// those of all, pore arrays this rank's. The solver is amg, steps are explicit or staged. Bytes are the same on the same
   /// number of ranks with the same parts.
   Flow(Container container, Fluid fluid, Options options = {}, std::shared_ptr<const Ranks> ranks = nullptr);
   ~Flow() override;

@@ -29,7 +29,7 @@ void ImplicitStep::check(const Problem& problem) const {
 /// packing's and the host makes v(n+3/2) of the forces, so that w(theta) = w + theta (v(n+3/2) - w).
 void ImplicitStep::find(const StepTask& task, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
-  check_dynamics(*dynamics, packing, problem.container);
+  check_dynamics(task);
   solution.implicit = true;
   set_motion(built, problem, packing, solution.motion);
   check_bodies(dynamics->bodies, built.grains.held);

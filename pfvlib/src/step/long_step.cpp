@@ -92,9 +92,15 @@ Matrix6Xd yielding_of_bodies(const std::vector<RigidBody>& bodies, double step) 
   return result;
 }
 
-void check_dynamics(const GrainDynamics& dynamics, const Packing& packing, const Container& container) {
-  check_sizes(dynamics, packing.size());
-  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+Eigen::Index own_count(const StepTask& task) {
+  return task.built.halo ? task.built.halo->own_count() : task.packing.size();
+}
+
+namespace {
+
+void check_grains(const GrainDynamics& dynamics, const Packing& packing, Eigen::Index own) {
+  check_sizes(dynamics, own);
+  for (Eigen::Index k = 0; k < own; ++k) {
     const std::string sphere = "sphere " + std::to_string(packing.ids[k]);
     if (!dynamics.other_forces.col(k).allFinite() ||
         (dynamics.other_torques.cols() > 0 && !dynamics.other_torques.col(k).allFinite()))
@@ -104,12 +110,24 @@ void check_dynamics(const GrainDynamics& dynamics, const Packing& packing, const
         (dynamics.inertias.size() > 0 && !(dynamics.inertias[k] > 0.0)))
       throw InputError(sphere + ": its mass or inertia is not a positive number; give kg and kg m2");
   }
+}
+
+void check_pistons(const GrainDynamics& dynamics, const Container& container) {
   for (int f = 0; f < container.face_count(); ++f) {
     const Piston piston = piston_of(dynamics.pistons, f);
     if (!(piston.mass > 0.0) || !std::isfinite(piston.other_force))
       throw InputError("piston " + container.faces[f].name +
                        ": its mass must be > 0 (kg) and its other force finite (N)");
   }
+}
+
+}  // namespace
+
+void check_dynamics(const StepTask& task) {
+  task.built.share.together([&] {
+    check_grains(*task.dynamics, task.packing, own_count(task));
+    check_pistons(*task.dynamics, task.problem.container);
+  });
 }
 
 int guided_axis(const Container& container, int face) {
@@ -129,6 +147,7 @@ Matrix6Xd yielding_of(const BuiltNetwork& built, const Problem& problem, const G
   const std::optional<RigidBodies>& bodies = built.operators.bodies;
   Matrix6Xd result = no_motion(count, container.face_count() + (bodies ? bodies->count() : 0));
   for (Eigen::Index i = 0; i < count; ++i) {
+    if (!built.share.owns_sphere(static_cast<int>(i))) continue;  // its owner moves it
     const int k = columns[i];
     const double inertia = dynamics.inertias.size() > 0
                                ? dynamics.inertias[k]
@@ -185,6 +204,7 @@ Loads held_loads(const StepTask& task, const Solution& solution) {
   const Eigen::Index wide = bodies ? bodies->count() : 0;
   Loads held = no_motion(count, container.face_count() + wide);
   for (Eigen::Index i = 0; i < count; ++i) {
+    if (!built.share.owns_sphere(static_cast<int>(i))) continue;
     held.col(i).head<3>() = dynamics->other_forces.col(columns[i]);
     if (dynamics->other_torques.cols() > 0)
       held.col(i).tail<3>() = dynamics->other_torques.col(columns[i]);

@@ -21,8 +21,10 @@ struct ForcedMotion {
 
 /// Throws InputError for settings that no long step can serve.
 void check_long_step(const Problem& problem, Coupling coupling);
+/// The grains of this rank in the packing of a step, which come before its ghosts.
+Eigen::Index own_count(const StepTask& task);
 /// Throws InputError for masses and forces that are missing or make no sense.
-void check_dynamics(const GrainDynamics& dynamics, const Packing& packing, const Container& container);
+void check_dynamics(const StepTask& task);
 
 /// Throws InputError where these are not the bodies that hold the packing's spheres, or make no sense.
 void check_bodies(const std::vector<RigidBody>& bodies, const Eigen::VectorXi& held);

@@ -171,6 +171,7 @@ void refine_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver&
 
 Loads pressure_loads(const BuiltNetwork& built, const Solution& solution) {
   Loads sum = loads_of(built, solution.relative_pressures);
+  join_loads(built, sum);
   const Matrix6Xd growth = forces_on_growth(solution.growth, built, solution.relative_pressures);
   sum.rightCols(growth.cols()) += growth;
   return sum;

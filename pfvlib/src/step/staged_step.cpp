@@ -36,10 +36,12 @@ void run_recursion(const StepTask& task, const ForcedMotion& forced,
   for (const ChebyshevStage& stage : recursion) {
     find_rates(built, problem, now, work, solution);
     solve_pressures(built, problem, *built.kept.solver, work, solution);
-    const Loads loads = pressure_loads(built, solution) +
-                        resisting_forces(built, problem.fluid.viscosity, now);
+    Loads resisting = resisting_forces(built, problem.fluid.viscosity, now);
+    join_loads(built, resisting);
+    const Loads loads = pressure_loads(built, solution) + resisting;
     Motion next = (1.0 - stage.m - stage.n) * forced.start + stage.m * now + stage.n * before +
                   stage.f * (forced.moved_by(loads) - forced.start);
+    if (built.share.ranks) built.share.spheres.refresh(*built.share.ranks, next);
     pressure.take(stage, solution.relative_pressures);
     rates.take(stage, solution.rates);
     motion.take(stage, now);
@@ -57,9 +59,9 @@ void run_recursion(const StepTask& task, const ForcedMotion& forced,
 void StagedStep::find(const StepTask& task, Solution& solution) {
   const auto& [built, problem, packing, dynamics, work] = task;
   find_rates_of_packing(task, solution);
-  check_dynamics(*dynamics, packing, problem.container);
+  check_dynamics(task);
   const double limit =
-      limit_.of(built, problem, packing.size(), dynamics->masses, dynamics->pistons, dynamics->bodies, work);
+      limit_.of(built, problem, own_count(task), dynamics->masses, dynamics->pistons, dynamics->bodies, work);
   // z: the step times the largest eigenvalue of the drag
   const std::vector<ChebyshevStage> recursion = chebyshev_stages(2.0 * solution.dt / limit);
   solution.stages = static_cast<int>(recursion.size());
