@@ -21,9 +21,7 @@ namespace LAMMPS_NS {
 std::string FixPfv::needs_one_rank() const {
   const pfv::Options& options = settings_.options;
   if (settings_.model != pfv::Model::pores) return "model darcy_grid";
-  const pfv::Coupling coupling = settings_.steps.coupling;
-  if (coupling == pfv::Coupling::implicit || coupling == pfv::Coupling::automatic)
-    return std::string("coupling ") + name_of(coupling);
+  if (settings_.steps.coupling == pfv::Coupling::implicit) return "coupling implicit";
   if (settings_.fluid.bulk_modulus) return "bulk_modulus";
   if (options.shear_viscous) return "shear_viscous";
   if (options.rebuild_lag > 0) return "rebuild_lag";

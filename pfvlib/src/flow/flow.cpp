@@ -174,9 +174,8 @@ const Forces& Flow::advance(const Packing& packing, double dt, const Step& step)
   if (step.coupling != Coupling::explicit_step && !step.dynamics)
     throw InputError(std::string(name_of(step.coupling)) +
                      " coupling needs the masses and other forces of the grains: give Step::dynamics");
-  if (parts_->ranks && (step.coupling == Coupling::implicit || step.coupling == Coupling::automatic))
-    throw InputError(std::string(name_of(step.coupling)) +
-                     " coupling works on one rank; on several take explicit or staged steps");
+  if (parts_->ranks && step.coupling == Coupling::implicit)
+    throw InputError("implicit coupling works on one rank; on several take explicit or staged steps, or auto");
   if (step.coupling == Coupling::automatic) return parts_->solve_by_choice(packing, dt, step);
   return parts_->solve(packing, dt, step.coupling, step.dynamics, step.commit);
 }
