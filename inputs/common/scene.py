@@ -15,6 +15,7 @@ from programs import BIN, liggghts_words, solve_words
 SEED = (int, 1, "sample number, 1, 2, ...")
 TOP = (str, "plane", "plane or extent: where the flow box ends")
 SHAKE = (float, 0.0, "force that keeps each grain moving, over its weight in the fluid")
+LAW = (str, "open_throat", "conductance law; hydraulic_radius is that of the papers and the thesis")
 OUT = (str, "post/sample", "where results go, without ending")
 
 

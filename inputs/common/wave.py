@@ -125,7 +125,7 @@ def run(folder, settings, measures, out, amplitude, duration, viscosity=None, to
     variables = {"r2": bed.mean_radius(grains), "LX": bed.LENGTH, "LY": bed.WIDTH,
                  "viscosity": viscosity, "time_step": step, "steps": steps, "every": every,
                  "stride": stride, "report": max(1, steps // 100), "amplitude": amplitude,
-                 "top": top_words(top, measures), "words": words,
+                 "top": top_words(top, measures), "words": words, "law": settings["LAW"],
                  "sensors": sensor_words(measures), "out": out, "name": folder.name,
                  "g": bed.BUOYANT, "shake": shake, "shake_end": min(shake_end, duration + 1.0)}
     said, cpu = scene.liggghts(folder, f"in.{folder.name}", variables, out + "_run",

@@ -15,6 +15,7 @@ KEYS = {
     "SHAKE": scene.SHAKE,
     "STEP": (float, 1.0, "time step over its default"),
     "TOP": scene.TOP,
+    "LAW": scene.LAW,
     "WORDS": (str, "retriangulate mean 0.001", "more words for fix pfv"),
     "OUT": scene.OUT,
 }

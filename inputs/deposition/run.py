@@ -23,9 +23,10 @@ KEYS = {
     "N": (int, 400, "grains"),
     "SEED": scene.SEED,
     "VISCOSITY": (float, 10.0, "Pa s"),
-    "END": (float, 10.0, "duration at 10 Pa s, s; goes with the viscosity"),
+    "END": (float, 16.0, "duration at 10 Pa s, s; goes with the viscosity"),
     "MODULUS": (float, 1.5e6, "E of the contact law, Pa"),
     "TOP": scene.TOP,
+    "LAW": scene.LAW,
     "STRAIN": (float, 0.1, "pore strain at which the network is built anew"),
     "OUT": scene.OUT,
 }
@@ -181,7 +182,7 @@ def couple(settings):
     said, cpu = scene.liggghts(SCENE, "in.deposition", {
         "N": grains, "r2": RADIUS, "LX": length, "LY": area / length, "LZ": HEIGHT,
         "viscosity": settings["VISCOSITY"], "time_step": step, "steps": steps, "every": every,
-        "stride": 20 * every, "report": max(1, steps // 100), "top": top,
+        "stride": 20 * every, "report": max(1, steps // 100), "top": top, "law": settings["LAW"],
         "strain": settings["STRAIN"], "E": settings["MODULUS"], "out": out,
         **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},
         out + "_run", scene.Progress("deposition", 8203, 8203 + steps, step))
@@ -209,7 +210,7 @@ def judge(run, settings):
                       zip(run.heights[SENSORS][:-1], arrivals)))
     print(f"  networks {int(run.state['retriangulations'][-1])}, CPU {run.figures['cpu']:.0f} s, "
           f"time step {run.figures['time_step']:.3g} s")
-    full = settings["END"] >= 10.0  # long enough for the last grains and for the pressure they leave
+    full = settings["END"] >= 16.0  # long enough for the last grains and for the pressure they leave
     checks = [
         ("gradient of the cloud / buoyant weight - 1, mean", ratio.mean() - 1,
          "within 0.03", abs(ratio.mean() - 1) <= 0.03),

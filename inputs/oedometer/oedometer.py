@@ -23,6 +23,7 @@ KEYS = {
     "BASE": (str, "floating", "floating or fixed"),
     "END": (float, 2.6, "duration of the loading, T_v"),
     "RETRIANGULATE": (float, 0.01, "pore strain"),
+    "LAW": scene.LAW,
     "FIELDS": (int, 0, "instants of the consolidation written for ParaView; 0: none"),
     "FIX": (str, "couple_every auto", "more keywords of fix pfv, in quotes"),
     "OUT": scene.OUT,
@@ -73,18 +74,18 @@ def piston_mass(grains):
     return 0.02 * mean_radius(grains) / mean_radius(1000)
 
 
-def permeability(dump, bottom, height, viscosity, report):
+def permeability(dump, bottom, height, viscosity, report, law):
     """Permeability (m2) of a dump with frictionless side walls, as in the coupled run."""
     box = (0.0, SIDE, 0.0, SIDE, bottom, bottom + height)
     return pfv_solve(SCENE, dump, box, viscosity, report, "--wall", "symmetry",
-                     "--conductance", "hydraulic_radius", "--face", "zlo:pressure=5000",
+                     "--conductance", law, "--face", "zlo:pressure=5000",
                      "--face", "zhi:pressure=0")["permeability"]
 
 
 def common_variables(settings):
     return {"N": settings["N"], "phi": solid_fraction(settings["N"]),
             "F0": CONFINEMENT * SIDE**2, "base_moves": int(settings["BASE"] == "floating"),
-            "out": settings["OUT"]}
+            "law": settings["LAW"], "out": settings["OUT"]}
 
 
 def make_sample(settings):
@@ -121,9 +122,9 @@ def prepare(settings):
 def measure_permeability(settings, sample, viscosity):
     out, height = settings["OUT"], sample["dry_height"]
     sample["K"] = permeability(out + ".dump", 0.0, sample["height"], viscosity,
-                               out + "_K.json")
+                               out + "_K.json", settings["LAW"])
     sample["K_loaded"] = permeability(out + "_loaded.dump", sample["loaded_bottom"],
-                                      height["loaded"], viscosity, out + "_K_loaded.json")
+                                      height["loaded"], viscosity, out + "_K_loaded.json", settings["LAW"])
 
 
 def plan(settings, sample):
@@ -156,8 +157,9 @@ def couple(settings, sample, planned):
                  ("viscosity", "time_step", "stride", "every", "rest_to", "steps")}
     variables["report"] = max(1, planned["steps"] // 100)
     variables.update(common_variables(settings), dF=settings["LOAD"] * SIDE**2,
-                     piston_mass=piston_mass(grains), retriangulate=settings["RETRIANGULATE"],
-                     words=settings["FIX"])
+                     piston_mass=piston_mass(grains), words=settings["FIX"])
+    if "darcy_grid" not in settings["FIX"].split():  # which has no throats
+        variables["words"] += f" retriangulate {settings['RETRIANGULATE']} conductance {settings['LAW']}"
     if settings["FIELDS"]:
         fields_every = max(1, planned["steps"] // settings["FIELDS"])
         variables["words"] += f" output {fields_every} {out}.pvd"

@@ -18,7 +18,7 @@ import scene
 import terzaghi
 from plotting import plt, save_figure
 
-KEYS = {key: oedometer.KEYS[key] for key in ("N", "SEED", "RETRIANGULATE")}
+KEYS = {key: oedometer.KEYS[key] for key in ("N", "SEED", "RETRIANGULATE", "LAW")}
 KEYS.update(LOAD=(float, 200.0e3, "step load, Pa"),
             FIELDS=(int, 10, "instants written for ParaView"),
             OUT=scene.OUT)

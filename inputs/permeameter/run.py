@@ -19,7 +19,7 @@ KEYS = {
     "PACKING": (str, "", "CSV with id,x,y,z,radius or LIGGGHTS dump; none: tests/data/packing_500"),
     "BOX": (str, "", "XLO,XHI,YLO,YHI,ZLO,ZHI in m; none: the extent of the grains, or of a periodic dump's cell"),
     "PERIODIC": (str, "dump", "dump: the axes that are periodic in the dump; none: walls on all sides"),
-    "LAW": (str, "hydraulic_radius", "conductance law"),
+    "LAW": scene.LAW,
     "WALL": (str, "symmetry", "symmetry or no_slip side walls"),
     "OUT": scene.OUT,
 }

@@ -23,6 +23,7 @@ KEYS = {
     "AMPLITUDE": (float, 1000.0, "of the wave, Pa"),
     "END": (float, 2.0, "duration, s"),
     "TOP": scene.TOP,
+    "LAW": scene.LAW,
     "OUT": scene.OUT,
 }
 

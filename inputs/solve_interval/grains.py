@@ -78,7 +78,7 @@ def bed():
 @functools.cache
 def oedometer_sample(count=300):
     """(grains, box, types) and what the oedometer measured of them."""
-    settings = oedometer.parse([f"N={count}", "OUT=../solve_interval/post/oedometer"])
+    settings = oedometer.parse([f"N={count}", "LAW=hydraulic_radius", "OUT=../solve_interval/post/oedometer"])
     measured = oedometer.prepare(settings)
     planned = oedometer.plan(settings, measured)
     grains = read_rest(SCENE / "post" / "oedometer.dump")

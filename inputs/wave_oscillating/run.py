@@ -25,6 +25,7 @@ KEYS = {
     "END": (float, 3.0, "duration of each run, s"),
     "SHAKE": scene.SHAKE,
     "TOP": scene.TOP,
+    "LAW": scene.LAW,
     "OUT": scene.OUT,
 }
 LIQUEFIED = 0.8  # of grad H / i_c: the thesis' nearly complete liquefaction
@@ -35,7 +36,7 @@ def consolidation_time(settings, measures):
     cancels, for K_d = K γ_w / μ."""
     box = (0.0, bed.LENGTH, 0.0, bed.WIDTH, 0.0, measures["top"])
     K = scene.pfv_solve(SCENE, f"{settings['OUT']}.dump", box, 1.0, f"{settings['OUT']}_K.json",
-                        "--wall", "symmetry", "--conductance", "hydraulic_radius",
+                        "--wall", "symmetry", "--conductance", settings["LAW"],
                         "--face", "zlo:pressure=1",
                         "--face", "zhi:pressure=0")["permeability"]
     height = measures["height"]

@@ -26,6 +26,7 @@ KEYS = {
     "SHAKE": scene.SHAKE,
     "SHAKE_END": (float, 0.5, "how long, s"),
     "TOP": scene.TOP,
+    "LAW": scene.LAW,
     "OUT": scene.OUT,
 }
 

@@ -21,6 +21,7 @@ KEYS = {
     "N": (str, "312,1250,5000", "grains, or a list of sizes"),
     "WIDTH": (float, 3.0, "of the bed across the wave, mean diameters"),
     "SEED": scene.SEED,
+    "LAW": scene.LAW,
     "OUT": scene.OUT,
 }
 LENGTH, DEPTH, AMPLITUDE = 2.0, 1.0, 1000.0  # m, m, Pa
@@ -59,12 +60,12 @@ def one_size(grains, settings):
     print(f"bed of {grains} grains, mean diameter {2 * radius:.4f} m", flush=True)
     seeds = {f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}
     _, cpu = scene.liggghts(SCENE, "in.wave_still", {
-        "N": grains, "r2": radius, "LY": across, "amplitude": AMPLITUDE, "out": out, **seeds},
+        "N": grains, "r2": radius, "LY": across, "amplitude": AMPLITUDE, "law": settings["LAW"], "out": out, **seeds},
         out, scene.Progress("bed", 0, 12001, 0.0))
     box = (0.0, LENGTH, 0.0, across, 0.0, DEPTH)
     permeability = [scene.pfv_solve(
         SCENE, f"{out}.dump", box, 1.0, f"{out}_K.json", "--wall", "symmetry",
-        "--conductance", "hydraulic_radius", "--face", f"{axis}lo:pressure=1",
+        "--conductance", settings["LAW"], "--face", f"{axis}lo:pressure=1",
         "--face", f"{axis}hi:pressure=0")["permeability"] for axis in "xz"]
     (_, pores, _), = fields.collection(SCENE / f"{out}.pvd")
     flow = fields.Fields(pores)
