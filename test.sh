@@ -51,6 +51,7 @@ if [ "${1:-}" = long ]; then
   "$root/run.sh" wave_dense SHAKE=0.5 RATE=100 AMPLITUDE=600
   "$root/run.sh" wave_loose SHAKE=0.5 RATE=100 AMPLITUDE=600
   PFV_COMMAND=$root/build/bin/pfv /usr/bin/python3 "$root/tests/python/pip_install.py"
+  "$root/tests/install/packages.sh"
   /usr/bin/python3 "$root/tests/hosts/test_hosts.py" -v
   PFV_COMMAND=$root/build/bin/pfv PYTHONPATH=$root/build/python /usr/bin/python3 "$root/tests/python/test_notebooks.py" --nbclient
   "$root/doc/accuracy.py"
