@@ -40,7 +40,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   if (!files_) files_ = std::make_unique<PfvResultFiles>(settings_, false);
 
   scalar_flag = vector_flag = 1;
-  size_vector = own_quantities + 6 * static_cast<int>(settings_.obstacles.size());
+  size_vector = own_quantities + 6 * static_cast<int>(settings_.obstacles.size()) + last_quantities;
   extscalar = extvector = 0;
   global_freq = 1;
   peratom_flag = 1;
@@ -351,7 +351,7 @@ void FixPfv::after_flow_call() {
     obstacles_.take_loads(grains_, flow_->forces());
     files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep, ranks_.library().get());
     if (files_->history_due(update->ntimestep))
-      files_->write_history(history_row(*flow_, flow_.report(), update->ntimestep, schedule_.taken()));
+      files_->write_history(history_row(*flow_, flow_.report(), stokes(), update->ntimestep, schedule_.taken()));
   });
   grains_.scatter(ranks_.is_one() ? flow_->forces() : pfv::Forces{},
                   ranks_.is_one() ? schedule_.held() : nullptr,

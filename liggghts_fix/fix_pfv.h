@@ -57,7 +57,8 @@ class FixPfv : public Fix {
   double memory_usage() override;
 
  private:
-  static constexpr int own_quantities = 10;  ///< of compute_vector; those of the obstacles follow
+  /// Of compute_vector, before and behind those of the obstacles.
+  static constexpr int own_quantities = 10, last_quantities = 4;
 
   // errors: each ends the run on all ranks, with one line
   template <typename Work>
@@ -134,6 +135,8 @@ class FixPfv : public Fix {
 
   // outputs
   double quantity(int n);
+  double last_quantity(int n);
+  pfv::StokesNumbers stokes() const;  ///< of all ranks that hold the flow; collective among these
   void print_phases();
   void print(const std::string& text);
 

@@ -11,6 +11,17 @@
 
 namespace LAMMPS_NS {
 
+namespace {
+
+std::string of_grains(const pfv::StokesNumbers& stokes) {
+  if (!(stokes.largest > 0.0)) return {};
+  char text[100];
+  std::snprintf(text, sizeof text, "Stokes number of the grains: largest %.3g  mean %.3g\n", stokes.largest, stokes.mean);
+  return text;
+}
+
+}  // namespace
+
 double FixPfv::compute_scalar() { return compute_vector(-1); }
 
 double FixPfv::compute_vector(int n) {
@@ -35,8 +46,27 @@ double FixPfv::quantity(int n) {
     case 8: return static_cast<double>(flow_->stages());
     case 9: return static_cast<double>(since_.steps);
     case -1: return flow_->strain();
-    default: return obstacles_.load(n - own_quantities);
+    default: break;
   }
+  const int load = n - own_quantities;
+  return load < obstacles_.components() ? obstacles_.load(load) : last_quantity(load - obstacles_.components());
+}
+
+double FixPfv::last_quantity(int n) {
+  switch (n) {
+    case 0: return flow_.report().reynolds_largest.value_or(0.0);
+    case 1: return flow_.report().reynolds_mean.value_or(0.0);
+    case 2: return stokes().largest;
+    default: return stokes().mean;
+  }
+}
+
+pfv::StokesNumbers FixPfv::stokes() const {
+  pfv::StokesNumbers found = pfv::stokes_numbers(grains_.packing(), grains_.masses(), settings_.fluid.viscosity);
+  double sums[] = {found.mean * found.mass, found.mass};
+  ranks_.add(sums, 2);
+  ranks_.take_largest(&found.largest, 1);
+  return {found.largest, sums[1] > 0.0 ? sums[0] / sums[1] : 0.0, sums[1]};
 }
 
 void FixPfv::post_run() {
@@ -48,7 +78,7 @@ void FixPfv::post_run() {
 
 void FixPfv::print_phases() {
   std::string text = "\nFix pfv (id " + std::string(id) + ") since it began:\n" +
-                     pfv::summary_of(flow_.report()) + schedule_.summary();
+                     pfv::summary_of(flow_.report()) + of_grains(stokes()) + schedule_.summary();
   if (!said_.citation && settings_.model == pfv::Model::pores) text += pfv::citation();
   said_.citation = true;
   print(text);

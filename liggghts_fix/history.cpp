@@ -57,8 +57,8 @@ void add_face(PfvNamedRow& row, const pfv::Container& container, int number, con
 
 }  // namespace
 
-PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, std::int64_t step,
-                        const PfvTaken& taken) {
+PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, const pfv::StokesNumbers& stokes,
+                        std::int64_t step, const PfvTaken& taken) {
   PfvNamedRow row;
   add(row, "step", static_cast<double>(step));
   add(row, "time", flow.time());
@@ -72,6 +72,10 @@ PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, s
   add(row, "permeability", report.permeability);
   add(row, "hidden", static_cast<double>(flow.hidden_or_outside()));
   add(row, "stages", static_cast<double>(flow.stages()));
+  add(row, "reynolds_largest", report.reynolds_largest);
+  add(row, "reynolds_mean", report.reynolds_mean);
+  add(row, "stokes_largest", stokes.largest);
+  add(row, "stokes_mean", stokes.mean);
   add_vector(row, "force", report.force_sum);
   for (std::size_t f = 0; f < report.faces.size(); ++f)
     add_face(row, flow.container(), static_cast<int>(f), report.faces[f]);

@@ -4,6 +4,7 @@
 #define LMP_PFV_HISTORY_H
 
 #include "pfv/flow_model.hpp"
+#include "pfv/stokes_numbers.hpp"
 
 #include <cstdint>
 #include <string>
@@ -23,8 +24,8 @@ struct PfvNamedRow {
 };
 
 /// The flow after its last step: counts, balances, forces, then its faces and openings.
-PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, std::int64_t step,
-                        const PfvTaken& taken);
+PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, const pfv::StokesNumbers& stokes,
+                        std::int64_t step, const PfvTaken& taken);
 
 }  // namespace LAMMPS_NS
 

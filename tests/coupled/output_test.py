@@ -114,13 +114,15 @@ class Output(CoupledTest):
     def test_history_holds_what_thermo_prints(self):
         """Each row is that of LIGGGHTS' own output; forces on grains and faces add up to nothing."""
         self.liggghts(HEAD + f"fix flow all pfv {FLOW} history 5 h.csv\n"
-                      "thermo_style custom step f_flow f_flow[1] f_flow[2] f_flow[7]\n"
+                      "thermo_style custom step f_flow f_flow[1] f_flow[2] f_flow[7] f_flow[11] f_flow[12] f_flow[13] f_flow[14]\n"
                       "thermo_modify format float %.15g norm no\nthermo 5\nrun 10\n")
         rows, printed = self.history(), read_thermo((self.folder / "log.liggghts").read_text())
         self.assertEqual([int(row["step"]) for row in rows], [0, 5, 10])
         for row, line in zip(rows, printed):
             for name, word in (("strain", "flow"), ("inflow", "flow[1]"), ("outflow", "flow[2]"),
-                               ("mean_pressure", "flow[7]")):
+                               ("mean_pressure", "flow[7]"), ("reynolds_largest", "flow[11]"),
+                               ("reynolds_mean", "flow[12]"), ("stokes_largest", "flow[13]"),
+                               ("stokes_mean", "flow[14]")):
                 self.assertAlmostEqual(float(row[name]), line[word], delta=1e-11 * abs(line[word]))
             self.assertEqual(row["permeability"], "")  # of grains that move there is none
             self.assertLess(abs(float(row["mass_error"])), 1e-12)

@@ -20,7 +20,8 @@ SHARED = "solver amg tolerance 1e-11 ranks all"
 ALONE = SHARED.replace("all", "one")
 SEEPAGE = "viscosity 0.01 " + faces(zlo="pressure 10", zhi="pressure 0")
 THERMO = ("thermo_style custom step f_flow f_flow[1] f_flow[2] f_flow[3] f_flow[4] f_flow[5] "
-          "f_flow[6] f_flow[7] f_flow[8] f_flow[10]\nthermo_modify norm no format float %.15g\nthermo 1\n")
+          "f_flow[6] f_flow[7] f_flow[8] f_flow[10] f_flow[11] f_flow[12] f_flow[13] f_flow[14]\n"
+          "thermo_modify norm no format float %.15g\nthermo 1\n")
 HEAD = "include in.packing\n"
 ALONG = "neigh_modify exclude type 1 1\n"  # grains pass through each other
 
@@ -45,6 +46,8 @@ class SharedFlow(CoupledTest):
             for row, other in zip(rows, others):
                 for name in ("flow", "flow[1]", "flow[2]", "flow[7]"):
                     self.assertAlmostEqual(other[name], row[name], delta=within * max(1e-6, abs(row[name])), msg=name)
+                for name in ("flow[11]", "flow[12]", "flow[13]", "flow[14]"):  # Reynolds and Stokes numbers
+                    self.assertAlmostEqual(other[name], row[name], delta=1e-6 * abs(row[name]), msg=name)
                 for name in ("Step", "flow[5]", "flow[8]", "flow[10]"):
                     self.assertEqual(other[name], row[name], name)
                 self.assertLess(abs(other["flow[3]"]), 1e-9)
