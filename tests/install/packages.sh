@@ -35,9 +35,9 @@ inside() { chroot "$chroot" env DEBIAN_FRONTEND=noninteractive HOME=/root OMP_NU
   OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 bash -euc "cd /work; $1"; }
 inside 'apt-get update -q; apt-get install -q -y --no-install-recommends /packages/pfv_*.deb' > "$build/apt.log" ||
   { tail -20 "$build/apt.log"; exit 1; }
-# each alone, so that one does not bring what another lacks
+# each alone, the one before taken off with what it brought: none has its needs from another
 echo "pfv:"; inside 'pfv selftest; test -s /usr/share/man/man1/pfv.1*; . /usr/share/bash-completion/completions/pfv'
-inside 'apt-get purge -q -y pfv; apt-get install -q -y --no-install-recommends /packages/python3-pfv_*.deb' >> "$build/apt.log"
+inside 'apt-get purge --autoremove -q -y pfv; apt-get install -q -y --no-install-recommends /packages/python3-pfv_*.deb' >> "$build/apt.log"
 echo "python3-pfv:"
 inside 'python3 -c "
 import numpy as np, pfv
@@ -45,9 +45,9 @@ x = np.array([[i, j, k] for i in range(5) for j in range(5) for k in range(5)]) 
 k = pfv.permeability(x, np.full(125, 0.5e-3), [[0, 5e-3]] * 3)
 print(k, \"m2\")
 assert 1e-9 < k < 1e-8"'
-inside 'apt-get purge -q -y python3-pfv; apt-get install -q -y --no-install-recommends /packages/liggghts-pfv_*.deb' >> "$build/apt.log"
+inside 'apt-get purge --autoremove -q -y python3-pfv; apt-get install -q -y --no-install-recommends /packages/liggghts-pfv_*.deb' >> "$build/apt.log"
 echo "liggghts-pfv:"; inside 'liggghts-pfv -in in.packages > log; tail -1 log
   grep -Eq "^force of the fluid on the grains (1|1[.]00000000[0-9]*|0[.]99999999[0-9]*) N" log'
-inside 'apt-get install -q -y --no-install-recommends /packages/libpfv-dev_*.deb pkg-config' >> "$build/apt.log"
+inside 'apt-get purge --autoremove -q -y liggghts-pfv; apt-get install -q -y --no-install-recommends /packages/libpfv-dev_*.deb pkg-config' >> "$build/apt.log"
 echo "libpfv-dev:"; inside 'g++ -std=c++17 uses_pfv.cpp $(pkg-config --cflags --libs pfv) -o uses_pfv; ./uses_pfv'
 echo "packages: all four work in a fresh chroot"
