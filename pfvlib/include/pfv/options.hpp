@@ -104,6 +104,8 @@ struct Options {
   /// (doc/stability.md, spins). With reciprocal rates.
   bool torques = false;
   SolverKind solver = SolverKind::automatic;
+  /// Spheres from which `automatic` may take amg: below, a factor is cheap, and its pressures are exact.
+  std::int64_t amg_from = 50000;
   OrderingKind ordering = OrderingKind::automatic;
   Precision precision = Precision::full;
   /// Where iterative solvers end, in (0, 1), 2-norms: cg and gauss_seidel at this residual over the right-hand side

@@ -34,7 +34,16 @@ void Schemes::forget_factor() {
 }
 
 Flow::Parts::Parts(Container in, Fluid of, const Options& by, std::shared_ptr<const Ranks> all)
-    : container(std::move(in)), fluid(of), options(by), team(std::make_shared<Team>(by.threads)), ranks(std::move(all)) {}
+    : container(std::move(in)), fluid(of), options(by), team(std::make_shared<Team>(by.threads)), ranks(std::move(all)),
+      automatic(by, ranks != nullptr) {}
+
+void Flow::Parts::use(SolverKind solver) {
+  if (options.solver == solver) return;
+  options.solver = solver;
+  if (!keeper.has_network()) return;
+  keeper.network().kept.solver.reset();
+  keeper.network().kept.former_solver.reset();
+}
 
 BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, bool commit) {
   // explicit steps have ended when they are booked, so that the faces have swept already
@@ -43,12 +52,14 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
   const auto taken_up = [&](Replaced&& before) {
     carry_over(memory, before, keeper.network(), problem(), swept);
     schemes.forget_network();
+    if (automatic.is_open()) automatic.begin(keeper.network().grains.spheres.size(), work.counts);
     // no trace of the old network in what follows
     solution.unknown_pressures.setZero(keeper.network().unknowns.count);
   };
   BuiltNetwork& built =
       keeper.update(packing, problem(),
                     {dt, commit, memory.pressures.size() > 0, solution}, work, taken_up);
+  if (automatic.is_open() && coupling != Coupling::implicit) use(automatic.now(work.counts));
   if (factor_pressures(built, problem(), dt, work)) schemes.forget_factor();
   work.counts.open_water = built.operators.open_water ? open_water_count(built) : 0;
   double pinned = 0.0;
@@ -91,6 +102,7 @@ const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
     solved = false;
     kept_balance.reset();
     coupling = by;
+    if (automatic.is_open() && by == Coupling::implicit) use(SolverKind::supernodal);
     schemes.of(by).check(problem());
     BuiltNetwork& built = update_network(packing, dt, commit);
     begin_solution(built, dt, commit);
@@ -116,7 +128,9 @@ double Flow::Parts::time_step_limit(const Eigen::VectorXd& masses,
 
 void Flow::Parts::choose_coupling(double dt, const Step& step) {
   const GrainDynamics& dynamics = *step.dynamics;
-  schemes.choice.choose(time_step_limit(dynamics.masses, dynamics.pistons, dynamics.bodies), dt, step, options,
+  Options able = options;
+  if (automatic.is_open()) able.solver = SolverKind::automatic;
+  schemes.choice.choose(time_step_limit(dynamics.masses, dynamics.pistons, dynamics.bodies), dt, step, able,
                         dynamics.masses.size(), keeper.rebuilds());
 }
 

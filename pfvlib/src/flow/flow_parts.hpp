@@ -3,6 +3,7 @@
 
 #include "pfv/flow.hpp"
 #include "results/balance.hpp"
+#include "step/automatic_solver.hpp"
 #include "step/coupling_choice.hpp"
 #include "step/fluid_memory.hpp"
 #include "step/implicit_step.hpp"
@@ -42,6 +43,7 @@ struct Flow::Parts {
   Options options;
   std::shared_ptr<Team> team;  ///< of options.threads
   std::shared_ptr<const Ranks> ranks;  ///< null: one has the packing
+  AutomaticSolver automatic;
   NetworkKeeper keeper;
   FluidMemory memory;
   Schemes schemes;
@@ -72,6 +74,8 @@ struct Flow::Parts {
   std::int64_t outside() const;
 
  private:
+  /// From here on, on the present network too; not while a step is under way.
+  void use(SolverKind solver);
   BuiltNetwork& update_network(const Packing& packing, double dt, bool commit);
   void begin_solution(const BuiltNetwork& built, double dt, bool commit);
   void choose_coupling(double dt, const Step& step);

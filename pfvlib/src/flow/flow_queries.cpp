@@ -176,6 +176,7 @@ Report Flow::report() const {
                         ? parts_->schemes.implicit().residual()
                         : residual_of(built, solution);
   report.counts = parts_->work.counts;
+  if (const std::string why = parts_->automatic.reason(parts_->options.solver); !why.empty()) report.solver_made_of += " (" + why + ")";
   report.seconds = parts_->work.seconds;
   report.wall_seconds = parts_->work.wall_seconds;
   if (parts_->ranks) add_up_times(report, *parts_->ranks);

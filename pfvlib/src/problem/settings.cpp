@@ -306,7 +306,8 @@ Setting tolerance() {
 std::vector<Setting> of_solver() {
   Setting solver = choice(row("Solver", "solver", "linear solver; auto: ", both, any_model), "solver",
                           option(&Options::solver));
-  solver.help += name_of(resolved(SolverKind::automatic));
+  solver.help += std::string(name_of(resolved(SolverKind::automatic))) + "; from " + std::to_string(Options{}.amg_from) +
+                 " spheres on amg for networks that serve few solves, or whose factor does not fit in memory";
   Setting ordering = choice(row("Solver", "ordering", "fill-reducing ordering of a direct solver; auto: ", both,
                                 any_model),
                             "ordering", option(&Options::ordering));

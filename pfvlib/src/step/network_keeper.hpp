@@ -67,6 +67,7 @@ class NetworkKeeper {
   void strain(const Solution& solution) { strain_.add(*built_, solution); }
   void restore(double strain, std::int64_t rebuilds);
 
+  bool has_network() const { return built_ != nullptr; }
   BuiltNetwork& network() const { return *built_; }
   double strain() const { return strain_.value(); }
   /// Networks after the first.
