@@ -44,8 +44,10 @@ py::object pressure_at(FlowHost& host, py::handle given) {
 }
 
 py::dict dict_of(const FaceResult& face) {
+  py::object moment = py::none();
+  if (face.moment) moment = array_of(*face.moment);
   return py::dict("flux"_a = face.flux, "force_pressure"_a = array_of(face.force_pressure),
-                  "force_viscous"_a = array_of(face.force_viscous));
+                  "force_viscous"_a = array_of(face.force_viscous), "moment"_a = moment);
 }
 
 py::dict face_results_of(FlowHost& host) {
@@ -130,7 +132,8 @@ That of the tetrahedron around the place. Raises InputError outside the box.)");
   flow.def("mean_pressure", [](FlowHost& host) { return host.ask([](FlowModel& m) { return m.mean_pressure(); }); },
            "Mean over the fluid's volume, Pa.");
   flow.def("faces", &face_results_of,
-           R"({face: {"flux", "force_pressure", "force_viscous"}}: m3/s, positive into the box; 3 numbers, N.
+           R"({face: {"flux", "force_pressure", "force_viscous", "moment"}}: m3/s, positive into the box; 3 numbers, N;
+N m of both about the origin of the coordinates, None without torques=True.
 
 Cost, once a step: one solve and two passes over the throats.)");
   flow.def("face_forces", &face_forces_of, "{face: force of the fluid on it, 3 numbers, N}; cheap.");

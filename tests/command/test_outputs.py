@@ -58,7 +58,8 @@ class Outputs(CommandTest):
         self.assert_vector(report["force_sum"])
         self.assertEqual(list(report["faces"]), FACES)
         for face in report["faces"].values():
-            self.assertEqual(list(face), ["flux", "force_pressure", "force_viscous"])
+            self.assertEqual(list(face), ["flux", "force_pressure", "force_viscous", "moment"])
+            self.assertIsNone(face["moment"])  # with `torques yes` only
             self.assert_number(face["flux"])
             self.assert_vector(face["force_pressure"])
             self.assert_vector(face["force_viscous"])

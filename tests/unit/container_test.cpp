@@ -96,6 +96,56 @@ TEST(Containers, ForcesAndFluxesBalance) {
   }
 }
 
+TEST(Containers, MomentsOfGrainsAndWallsBalance) {
+  for (const Case& one : polyhedra()) {
+    Random random(4);
+    const pfv::PackingArrays packing = spheres_in(one.container, 200, 0.07, random);
+    pfv::Container container = driven(one.container, one.container.faces[0].name, one.container.faces[1].name);
+    container.faces[0].boundary = pfv::Boundary::pressure(11.0);  // 10 Pa in common
+    container.faces[1].boundary = pfv::Boundary::pressure(10.0);
+    pfv::Options options;
+    options.torques = true;
+    pfv::Flow flow(container, viscosity_one(), options);
+    const pfv::Forces& forces = flow.evaluate(packing.view());
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    double largest = 0.0;
+    for (Eigen::Index k = 0; k < packing.positions.cols(); ++k)
+      moment += packing.positions.col(k).cross(forces.total.col(k)) + forces.torque.col(k);
+    for (const pfv::FaceResult& face : flow.faces()) {
+      ASSERT_TRUE(face.moment) << one.name;
+      moment += *face.moment;
+      largest = std::max(largest, face.moment->norm());
+    }
+    EXPECT_GT(largest, 0.1) << one.name;
+    EXPECT_LT(moment.norm(), 1e-12 * largest) << one.name;
+  }
+}
+
+/// By the reciprocal theorem the fluid turns a shell at rest, under a pressure of 1 at one end, as strongly as the shell,
+/// turned at 1 rad/s, drives fluid in there. Each axis lies elsewhere: the moment is taken about it.
+TEST(Containers, TheMomentOnAShellIsWhatItDrivesWhenItTurns) {
+  for (const Case& one : cylinders()) {
+    Random random(7);
+    const pfv::PackingArrays packing = spheres_in(one.container, 200, 0.06, random);
+    const pfv::Surface& shell = one.container.faces[2].surface;
+    const pfv::Container still = driven(one.container, one.container.faces[0].name, one.container.faces[1].name);
+    pfv::Flow flow(still, viscosity_one());
+    flow.evaluate(packing.view());
+    const pfv::FaceResult on_shell = flow.faces()[2];
+    ASSERT_TRUE(on_shell.moment) << one.name;
+    const Eigen::Vector3d force = on_shell.force_pressure + on_shell.force_viscous;
+    const double torque = shell.axis.dot(*on_shell.moment - shell.point.cross(force));
+    pfv::Container turning = still;
+    turning.faces[0].boundary = pfv::Boundary::pressure(0.0);
+    turning.faces[2].angular_velocity = shell.axis;
+    turning.faces[2].pivot = shell.point;
+    pfv::Flow driving(turning, viscosity_one());
+    driving.evaluate(packing.view());
+    EXPECT_GT(std::abs(torque), 1e-8) << one.name;
+    EXPECT_NEAR(driving.faces()[0].flux / torque, 1.0, 1e-9) << one.name;
+  }
+}
+
 TEST(Containers, ACubeOfSixPlanesIsTheBox) {
   const pfv::PackingArrays packing = data_packing("packing_100.csv");
   pfv::Flow box(upward_box(pfv::Wall::no_slip), viscosity_one());

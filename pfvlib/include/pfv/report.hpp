@@ -16,6 +16,9 @@ struct FaceResult {
   double flux = 0.0;                                          ///< m³/s, positive INTO the container
   Eigen::Vector3d force_pressure = Eigen::Vector3d::Zero();   ///< N, of the fluid on the face
   Eigen::Vector3d force_viscous = Eigen::Vector3d::Zero();    ///< N, of the fluid on the face
+  /// N m, of both forces about the origin of the coordinates; about a place c it is this - c x force. Absent where the
+  /// moments of viscous forces are not kept: in boxes without Options::torques, along periodic axes, for darcy_grid.
+  std::optional<Eigen::Vector3d> moment;
 };
 
 /// What crosses a patch or enters a region.

@@ -117,6 +117,7 @@ class _FaceResult(TypedDict):
     flux: float
     force_pressure: _Reals
     force_viscous: _Reals
+    moment: _Reals | None
 
 class _SliceMeans(TypedDict):
     pores: int

@@ -33,7 +33,8 @@ Json json_of(const std::vector<FaceResult>& faces) {
   for (const FaceResult& face : faces)
     json[face.name] = {{"flux", json_of(face.flux)},
                        {"force_pressure", json_of(face.force_pressure)},
-                       {"force_viscous", json_of(face.force_viscous)}};
+                       {"force_viscous", json_of(face.force_viscous)},
+                       {"moment", json_of(face.moment)}};
   return json;
 }
 

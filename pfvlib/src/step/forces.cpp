@@ -4,6 +4,8 @@
 #include "step/operators.hpp"
 #include "work/phase_clock.hpp"
 
+#include <algorithm>
+
 namespace pfv {
 
 Eigen::Vector3d lift_of(const Problem& problem, const Packing& packing, int column) {
@@ -94,25 +96,44 @@ void find_forces(BuiltNetwork& built, const Problem& problem, const Packing& pac
     find_sphere_pressures(built, problem, solution, packing.size(), forces.sphere_pressure);
 }
 
+namespace {
+
+/// Whether the viscous forces on walls have their moments; those in a periodic cell depend on which images are taken.
+bool has_wall_moments(const BuiltNetwork& built, const Solution& solution) {
+  const auto& periodic = solution.container.periodic;
+  return solution.loads.cols() > 0 && built.operators.force_matrix && built.operators.force_matrix->wall_moments &&
+         std::none_of(periodic.begin(), periodic.end(), [](bool axis) { return axis; });
+}
+
+/// `load`: force and moment about `origin`.
+Eigen::Vector3d moment_about_zero(const Vector6d& load, const Eigen::Vector3d& origin) {
+  return load.tail<3>() + origin.cross(load.head<3>());
+}
+
+}  // namespace
+
 std::vector<FaceResult> face_forces(const BuiltNetwork& built, const Solution& solution) {
   const auto& contacts = built.boundaries.contacts;
   const int spheres = built.grains.spheres.size(), count = solution.container.face_count();
-  Eigen::Matrix3Xd pushes = Eigen::Matrix3Xd::Zero(3, count);
+  Matrix6Xd pushes = Matrix6Xd::Zero(6, count);
   for (std::size_t c = 0; c < contacts.size(); ++c)
     if (contacts[c].face != PoreBoundaries::inside)
       pushes.col(contacts[c].face) += solution.relative_pressures[contacts[c].pore] *
-                                      built.bases.load(static_cast<int>(c)).head<3>();
-  const Matrix6Xd on_growth = forces_on_growth(solution.growth, built, solution.relative_pressures);
+                                      built.bases.load(static_cast<int>(c));
   if (built.share.ranks) built.share.ranks->add(pushes.data(), static_cast<std::size_t>(pushes.size()));
+  const Matrix6Xd on_growth = forces_on_growth(solution.growth, built, solution.relative_pressures);
+  const bool moments = has_wall_moments(built, solution);
   std::vector<FaceResult> faces(count);
   for (int f = 0; f < count; ++f) {
     faces[f].name = solution.container.faces[f].name;
-    faces[f].force_pressure =
-        pushes.col(f) + on_growth.col(f).head<3>() + solution.reference * solution.geometry.loads.col(f).head<3>();
+    const Vector6d of_pressure =
+        pushes.col(f) + on_growth.col(f) + solution.reference * solution.geometry.loads.col(f);
+    faces[f].force_pressure = of_pressure.head<3>();
     if (solution.loads.cols() == 0) continue;
     // on a periodic face that moves the fluid's stress, whatever carries it
     const bool periodic = f < 6 && solution.container.periodic[f / 2];
     (periodic ? faces[f].force_pressure : faces[f].force_viscous) += solution.loads.col(spheres + f).head<3>();
+    if (moments) faces[f].moment = moment_about_zero(of_pressure + solution.loads.col(spheres + f), built.network.origin);
   }
   return faces;
 }

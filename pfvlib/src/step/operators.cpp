@@ -31,7 +31,8 @@ void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& coun
       viscous_shares(problem.options.conductance, built.network, built.throats, built.vertices);
   built.operators.force_matrix =
       force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
-                   built.grains.spheres.size(), {true, true, problem.options.torques, turning},
+                   built.grains.spheres.size(),
+                   {true, true, problem.options.torques, turning || !problem.container.is_box},
                    *problem.team);
   leave_faces_to_owners(built);
   if (stretching) {
