@@ -403,8 +403,9 @@ void modify_setting(const pfv::Setting& setting, Words& words, PfvSettings& sett
 
 }  // namespace
 
-PfvSettings parse_pfv(int narg, char** arg, const std::array<bool, 3>& periodic) {
+PfvSettings parse_pfv(int narg, char** arg, const std::array<bool, 3>& periodic, const PfvUnits& units) {
   PfvSettings settings;
+  settings.fluid.density = units.of_density(settings.fluid.density);
   settings.box.periodic = periodic;
   for (std::size_t face = 0; face < 6; ++face)
     if (periodic[face / 2]) settings.sources[face].kind = Source::periodic;

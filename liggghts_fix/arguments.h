@@ -4,6 +4,8 @@
 #ifndef LMP_PFV_ARGUMENTS_H
 #define LMP_PFV_ARGUMENTS_H
 
+#include "script_units.h"
+
 #include "pfv/container.hpp"
 #include "pfv/mesh_walls.hpp"
 #include "pfv/settings.hpp"
@@ -92,9 +94,10 @@ struct PfvSettings : pfv::Settings {
 };
 
 /// The settings of `fix ID group pfv ...`; `arg` holds the words behind the style. Throws
-/// pfv::InputError. `periodic`: axes along which the simulation box is periodic; they have no faces to give. Of a
+/// pfv::InputError. `periodic`: axes along which the simulation box is periodic; they have no faces to give; `units`: of the
+/// words, which the defaults are converted to. Of a
 /// container the walls have still to be found (`PfvFoundWalls::complete`).
-PfvSettings parse_pfv(int narg, char** arg, const std::array<bool, 3>& periodic);
+PfvSettings parse_pfv(int narg, char** arg, const std::array<bool, 3>& periodic, const PfvUnits& units);
 
 /// Applies one keyword of `fix_modify ID ...` and returns the number of words it took. Throws
 /// pfv::InputError, also for a keyword that cannot be modified.

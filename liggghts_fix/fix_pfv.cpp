@@ -33,7 +33,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
       obstacles_(lmp), ranks_(world) {
   check_environment();
   everywhere([&] {
-    settings_ = parse_pfv(narg - 3, arg + 3, cell_.axes());
+    settings_ = parse_pfv(narg - 3, arg + 3, cell_.axes(), units());
     settings_.left_out = PfvFoundWalls(lmp, groupbit).complete(settings_);
   });
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_, true); });
@@ -108,12 +108,18 @@ std::string FixPfv::with_culprits(const std::exception& problem, const pfv::Pack
   return message + " (drawn in " + *settings_.culprits + ")";
 }
 
+/// Those of the script; SI until it is known that these are none.
+const PfvUnits& FixPfv::units() const {
+  const PfvUnits* units = units_of(update->unit_style);
+  return units ? *units : si_units();
+}
+
 // LIGGGHTS-PUBLIC adds to one error in five, by the clock, a "tip of the day" that it prints from freed
 // memory. It looks for its name in the version, which nothing reads after an error.
 void FixPfv::stop(const char* file, int line, const std::string& problem) {
   static char version[] = "3.8";
   universe->version = version;
-  error->fix_error(file, line, this, problem.c_str());
+  error->fix_error(file, line, this, units().relabelled(problem).c_str());
 }
 
 void FixPfv::fail_together(std::string message) {
@@ -131,8 +137,7 @@ void FixPfv::check_environment() {
   // The classes of another version may have another layout in memory than the headers used here.
   if (!std::strstr(universe->version, "LIGGGHTS-PUBLIC 3.8"))
     stop(FLERR, "was built for LIGGGHTS-PUBLIC 3.8; build it for this version");
-  if (std::strcmp(update->unit_style, "si") != 0)
-    stop(FLERR, "needs `units si`");
+  if (!units_of(update->unit_style)) stop(FLERR, why_refused(update->unit_style));
   if (!atom->radius_flag || !atom->rmass_flag || !atom->tag_enable)
     stop(FLERR, "needs atoms with radius, mass and tag; use `atom_style granular`");
   if (atom->superquadric_flag)

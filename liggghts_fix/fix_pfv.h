@@ -20,6 +20,7 @@ FixStyle(pfv,FixPfv)
 #include "other_fixes.h"
 #include "restart_record.h"
 #include "result_files.h"
+#include "script_units.h"
 #include "solve_schedule.h"
 #include "unseen_walls.h"
 
@@ -73,6 +74,8 @@ class FixPfv : public Fix {
   /// Its text, once those of the grains that it names are drawn.
   std::string with_culprits(const std::exception& problem, const pfv::Packing& grains) const;
   pfv::PackingArrays grains_named(const std::vector<std::int64_t>& tags) const;
+
+  const PfvUnits& units() const;
 
   // refusals
   void check_environment();

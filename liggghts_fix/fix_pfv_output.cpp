@@ -78,7 +78,7 @@ void FixPfv::post_run() {
 
 void FixPfv::print_phases() {
   std::string text = "\nFix pfv (id " + std::string(id) + ") since it began:\n" +
-                     pfv::summary_of(flow_.report()) + of_grains(stokes()) + schedule_.summary();
+                     units().relabelled(pfv::summary_of(flow_.report()) + of_grains(stokes())) + schedule_.summary();
   if (!said_.citation && settings_.model == pfv::Model::pores) text += pfv::citation();
   said_.citation = true;
   print(text);

@@ -136,7 +136,7 @@ void FixPfv::warn_of_empty_box() const {
 }
 
 void FixPfv::warn_of(const std::string& problem) const {
-  error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + problem).c_str());
+  error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + units().relabelled(problem)).c_str());
 }
 
 /// A face goes on where its mesh ends: a gate, a plate with an opening. Where the flow is.
@@ -161,8 +161,8 @@ void FixPfv::say_what_holds_the_fluid() {
   std::string text;
   for (int number = 0; number < container_.face_count(); ++number)
     text += (number ? ", " : "") + faces_.described(number);
-  print(beginning + "held by " + std::to_string(container_.face_count()) + " walls: " + text + "\n");
-  for (const std::string& reason : settings_.left_out) print(beginning + "left out: " + reason + "\n");
+  print(beginning + "held by " + std::to_string(container_.face_count()) + " walls: " + units().relabelled(text) + "\n");
+  for (const std::string& reason : settings_.left_out) print(beginning + "left out: " + units().relabelled(reason) + "\n");
 }
 
 /// Of the grains, without the spheres of obstacles. Where the flow is.
@@ -184,7 +184,7 @@ std::int64_t FixPfv::hidden_or_outside() const {
 void FixPfv::say_what_is_filled() {
   const pfv::Packing packing = grains_.grains();
   const PfvGrainTotals grains = totals_of(packing, ranks_);
-  for (const std::string& line : obstacles_.news()) print("Fix pfv (id " + std::string(id) + "): " + line + "\n");
+  for (const std::string& line : obstacles_.news()) print("Fix pfv (id " + std::string(id) + "): " + units().relabelled(line) + "\n");
   const auto is_grain = [&](int column) { return column < packing.size(); };
   const std::vector<int> hidden = flow_->hidden();
   const std::int64_t seen_nowhere = hidden_or_outside();
@@ -200,10 +200,10 @@ void FixPfv::say_what_is_filled() {
                   "the volume\n",
                   container_.is_box ? "flow box" : "container", volume, grains.count - outside, outside,
                   2.0 * grains.smallest, 2.0 * grains.largest, 100.0 * grains.solid / volume);
-  print("Fix pfv (id " + std::string(id) + "): " + text);
-  if (2.0 * grains.mean_radius > pfv::largest_usual_diameter)
-    warn_of("the mean diameter of the grains is " + std::to_string(2.0 * grains.mean_radius) +
-            " m; lengths are in m, not mm");
+  print("Fix pfv (id " + std::string(id) + "): " + units().relabelled(text));
+  if (2.0 * grains.mean_radius > units().of_length(pfv::largest_usual_diameter))
+    warn_of("the mean diameter of the grains is " + std::to_string(2.0 * grains.mean_radius) + " m; lengths are in " +
+            (&units() == &si_units() ? "m, not mm" : units().length + std::string(" with `units ") + units().style + "`"));
 }
 
 }  // namespace LAMMPS_NS

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "found_walls.h"
 
+#include "script_units.h"
 #include "wall_shapes.h"
 
 #include "pfv/container.hpp"
@@ -11,6 +12,7 @@
 #include "fix_mesh_surface.h"
 #include "fix_wall_gran.h"
 #include "modify.h"
+#include "update.h"
 
 #include <mpi.h>
 #include <algorithm>
@@ -50,10 +52,11 @@ PfvFaceSource source_of(const PfvWall& wall) {
   return source;
 }
 
-bool same_plane(const pfv::Surface& a, const pfv::Surface& b) {
+/// `nothing`: a length that is round-off.
+bool same_plane(const pfv::Surface& a, const pfv::Surface& b, double nothing) {
   if (!a.is_plane() || !b.is_plane()) return false;
   const double way = a.normal.dot(b.normal) > 0.0 ? 1.0 : -1.0;
-  return (a.normal - way * b.normal).norm() < same && std::abs(a.offset - way * b.offset) < same * std::abs(a.offset) + 1e-12;
+  return (a.normal - way * b.normal).norm() < same && std::abs(a.offset - way * b.offset) < same * std::abs(a.offset) + nothing;
 }
 
 /// A cylinder goes with two planes square to it and nothing else.
@@ -252,12 +255,13 @@ std::vector<PfvFoundWalls::Surfaces> PfvFoundWalls::surfaces_of_faces(PfvSetting
 void PfvFoundWalls::drop_walls_that_bound_nothing(PfvSettings& settings, std::vector<Surfaces>& surfaces,
                                                   std::size_t named, std::vector<std::string>& left_out) const {
   const Eigen::Vector3d middle = middle_of_grains();
+  const double nothing = units_of(update->unit_style)->of_length(1e-12);
   for (std::size_t f = settings.faces.size(); f-- > named;) {
     std::vector<Surfaces> others = surfaces;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(f));
     const std::optional<double> with = volume_within(surfaces, middle), without = volume_within(others, middle);
     const bool doubled = std::any_of(others.begin(), others.end(), [&](const Surfaces& other) {
-      return surfaces[f].size() == 1 && other.size() == 1 && same_plane(surfaces[f][0], other[0]);
+      return surfaces[f].size() == 1 && other.size() == 1 && same_plane(surfaces[f][0], other[0], nothing);
     });
     if (!doubled && (!with || !without || std::abs(*without - *with) > same * *with)) continue;
     left_out.push_back((settings.sources[f].kind == Source::mesh ? "mesh '" : "wall '") + settings.faces[f].name + "' bounds nothing, since others keep the fluid from it");

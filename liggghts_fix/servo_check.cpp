@@ -75,7 +75,7 @@ void FixPfv::check_servos() {
   const bool reaches_target = gains[worst].kp <= 1.0 + swing;
   if (swing > 1.0 && reaches_target && settings_.steps.coupling == pfv::Coupling::explicit_step)
     throw pfv::InputError(text);
-  error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + text).c_str());
+  warn_of(text);
 }
 
 std::string FixPfv::swinging_servo(int face, const PfvServoGain& servo, double resistance,

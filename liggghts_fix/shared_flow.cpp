@@ -115,7 +115,7 @@ void FixPfv::fail_on_flow(const std::exception& problem) {
     stop(FLERR, with_culprits(problem, named.view()));
   }
   if (!ranks_.is_first()) std::this_thread::sleep_for(std::chrono::seconds(1));  // the first one's text stands first
-  const std::string message = "Fix pfv (id " + std::string(id) + "): " + problem.what();
+  const std::string message = "Fix pfv (id " + std::string(id) + "): " + units().relabelled(problem.what());
   error->one(FLERR, message.c_str());
 }
 

@@ -44,7 +44,7 @@ pfv::TimeStepCheck FixPfv::look_at_time_step() {
       pfv::warnings_of(check, settings_.steps.couple_every, settings_.steps.safety, remedy);
   if (!said_.time_step)
     for (const std::string& warning : warnings)
-      error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + warning).c_str());
+      warn_of(warning);
   said_.time_step = said_.time_step || !warnings.empty();
   return check;
 }
@@ -53,7 +53,7 @@ pfv::TimeStepCheck FixPfv::look_at_time_step() {
 void FixPfv::check_time_step() {
   said_.time_step = false;
   if (!settings_.steps.time_step_check && !needs_forces()) return;
-  print("Fix pfv (id " + std::string(id) + "): " + look_at_time_step().text() + "\n");
+  print("Fix pfv (id " + std::string(id) + "): " + units().relabelled(look_at_time_step().text()) + "\n");
 }
 
 /// Within a run: a packing that grows denser, or pores that close, bring the limit down. A look costs about as

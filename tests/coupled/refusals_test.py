@@ -157,9 +157,9 @@ class Refusals(CoupledTest):
     # the simulation
 
     def test_units(self):
-        script = (f"units cgs\natom_style granular\nboundary f f f\nregion r block 0 1 0 1 0 1\n"
+        script = (f"units real\natom_style granular\nboundary f f f\nregion r block 0 1 0 1 0 1\n"
                   f"create_box 1 r\nfix flow all pfv {FLOW}\n")
-        self.refused(script, "units si")
+        self.refused(script, "units real", "si, cgs, micro, nano")
 
     def test_atoms_without_a_radius(self):
         script = (f"units si\natom_style atomic\nboundary f f f\nregion r block 0 1 0 1 0 1\n"

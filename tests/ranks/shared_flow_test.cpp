@@ -88,6 +88,10 @@ void expect_reports_agree(const pfv::Report& found, const pfv::Report& expected)
     expect_near(found.faces[f].flux, expected.faces[f].flux, 1e-9, flow, "flux");
     EXPECT_LT((found.faces[f].force_pressure - expected.faces[f].force_pressure).norm(), 1e-9 * force);
     EXPECT_LT((found.faces[f].force_viscous - expected.faces[f].force_viscous).norm(), 1e-9 * force);
+    ASSERT_EQ(found.faces[f].moment.has_value(), expected.faces[f].moment.has_value());
+    if (found.faces[f].moment) {
+      EXPECT_LT((*found.faces[f].moment - *expected.faces[f].moment).norm(), 1e-8 * force);
+    }
   }
   ASSERT_EQ(found.openings.size(), expected.openings.size());
   for (std::size_t i = 0; i < found.openings.size(); ++i) {

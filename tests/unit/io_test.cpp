@@ -226,7 +226,9 @@ TEST_F(InputOutput, ReportHoldsNullForWhatHasNoMeaning) {
   report.spheres = 100;
   report.mass_error = std::numeric_limits<double>::quiet_NaN();
   report.solver = "supernodal";
-  report.faces.push_back({"zhi", -0.25});
+  report.faces.resize(1);
+  report.faces[0].name = "zhi";
+  report.faces[0].flux = -0.25;
   report.seconds.step = 0.5;
   pfv::write_report(path("report.json"), report);
   const auto json = nlohmann::json::parse(text("report.json"));

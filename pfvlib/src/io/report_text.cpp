@@ -68,7 +68,7 @@ std::string summary_of(const Report& done) {
   text += reynolds(done);
   text += "solver " + done.solver + ": " + done.solver_made_of + "\n";
   if (done.counts.background > 0)
-    text += line("built in the background %lld  waited for them %.4g s\n",
+    text += line("built in the background %lld  waited for them %.4g wall seconds\n",
                  whole(done.counts.background), done.wall_seconds.waited);
   return text + permeability(done);
 }
