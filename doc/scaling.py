@@ -3,9 +3,8 @@
 """The tables of doc/scaling.md:  doc/scaling.py [solve] [coupled] [million]
 
 `pfv solve` of dense packings on several ranks, and on one from 25 000 grains on; 50 coupled steps of LIGGGHTS on one and
-several ranks; all of it without a word. With `million` up to a million grains, which takes 9 GB, coupled 12. Every packing
-is made of mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some minutes; with `million`
-half an hour.
+several ranks; all of it without a word. With `million` up to a million grains, which takes 9 GB. Every packing is made of
+mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some minutes.
 """
 import json
 import os

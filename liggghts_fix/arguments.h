@@ -94,9 +94,9 @@ struct PfvSettings : pfv::Settings {
 };
 
 /// The settings of `fix ID group pfv ...`; `arg` holds the words behind the style. Throws
-/// pfv::InputError. `periodic`: axes along which the simulation box is periodic; they have no faces to give; `units`: of the
-/// words, which the defaults are converted to. Of a
-/// container the walls have still to be found (`PfvFoundWalls::complete`).
+/// pfv::InputError. `periodic`: axes along which the simulation box is periodic; they have no faces to give; `units`:
+/// of the words, which the defaults are converted to. Of a container the walls have still to be found
+/// (`PfvFoundWalls::complete`).
 PfvSettings parse_pfv(int narg, char** arg, const std::array<bool, 3>& periodic, const PfvUnits& units);
 
 /// Applies one keyword of `fix_modify ID ...` and returns the number of words it took. Throws

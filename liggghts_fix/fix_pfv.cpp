@@ -56,7 +56,8 @@ void FixPfv::post_create() {
   const std::string property_id = std::string(id) + "_prop";
   std::vector<const char*> words{property_id.c_str(), group->names[igroup], "property/atom",
                                  property_id.c_str(), "vector", "no", "no", "no"};
-  words.insert(words.end(), home_column() + (comm->nprocs > 1 ? 1 : 0), "0.");
+  ranks_.dealt.column = adapts() ? PfvGrainExchange::width_with_slopes : PfvGrainExchange::returned_width;
+  words.insert(words.end(), ranks_.dealt.column + (comm->nprocs > 1 ? 1 : 0), "0.");
   per_atom_ = modify->add_fix_property_atom(static_cast<int>(words.size()),
                                             const_cast<char**>(words.data()), style);
   array_atom = per_atom_->array_atom;

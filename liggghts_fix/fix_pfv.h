@@ -111,7 +111,6 @@ class FixPfv : public Fix {
   // which ranks hold the flow, and which grains
   void choose_ranks();
   std::string needs_one_rank() const;
-  int home_column() const;  ///< of the per-atom array, behind the loads
   PfvHomes homes() const;
   void deal_where_due();
   void deal_anew();

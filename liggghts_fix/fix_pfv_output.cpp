@@ -79,6 +79,8 @@ void FixPfv::post_run() {
 void FixPfv::print_phases() {
   std::string text = "\nFix pfv (id " + std::string(id) + ") since it began:\n" +
                      units().relabelled(pfv::summary_of(flow_.report()) + of_grains(stokes())) + schedule_.summary();
+  if (ranks_.dealt.times > 0)
+    text += "  grains dealt to the ranks " + std::to_string(ranks_.dealt.times) + " times\n";
   if (!said_.citation && settings_.model == pfv::Model::pores) text += pfv::citation();
   said_.citation = true;
   print(text);

@@ -26,6 +26,8 @@ class PfvFlowRanks {
     bool chosen = false;  ///< which ranks hold the flow
     bool wanted = false;  ///< the grains are dealt anew before the next call
     std::int64_t network = 0;  ///< that was looked at
+    int times = 0;             ///< the first one counted
+    int column = 0;            ///< of the per-atom array, where the grains' parts stand
     double spread = 0.0;       ///< then, m³
   } dealt;
 
@@ -34,7 +36,6 @@ class PfvFlowRanks {
   bool are_all() const { return ranks_ != nullptr; }
   bool is_one() const { return own_ == 0 || are_all(); }  ///< this rank
   bool is_first() const { return own_ == 0; }
-  int own() const { return own_; }
   /// For the library; null: rank 0 alone.
   const std::shared_ptr<const pfv::Ranks>& library() const { return ranks_; }
 

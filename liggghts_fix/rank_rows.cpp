@@ -32,6 +32,8 @@ void PfvRankRows::set_homes(std::vector<int> homes) {
   arriving_.counts.resize(comm->nprocs);
   MPI_Alltoall(leaving_.counts.data(), 1, MPI_INT, arriving_.counts.data(), 1, MPI_INT, world);
   arriving_.sum_up();
+  place_.clear();
+  if (std::is_sorted(homes.begin(), homes.end())) return;
   std::vector<int> next = leaving_.offsets;
   place_ = std::move(homes);
   for (int& place : place_) place = next[place]++;
@@ -46,6 +48,7 @@ std::vector<double> PfvRankRows::exchanged(const std::vector<double>& rows, cons
 }
 
 std::vector<double> PfvRankRows::to_homes(const std::vector<double>& mine, int width) const {
+  if (place_.empty()) return exchanged(mine, leaving_, arriving_, width);
   std::vector<double> rows(mine.size());
   for (std::size_t k = 0; k < place_.size(); ++k)
     std::copy_n(&mine[width * k], width, &rows[std::size_t(width) * place_[k]]);
@@ -53,7 +56,8 @@ std::vector<double> PfvRankRows::to_homes(const std::vector<double>& mine, int w
 }
 
 std::vector<double> PfvRankRows::back(const std::vector<double>& here, int width) const {
-  const std::vector<double> rows = exchanged(here, arriving_, leaving_, width);
+  std::vector<double> rows = exchanged(here, arriving_, leaving_, width);
+  if (place_.empty()) return rows;
   std::vector<double> mine(rows.size());
   for (std::size_t k = 0; k < place_.size(); ++k)
     std::copy_n(&rows[std::size_t(width) * place_[k]], width, &mine[width * k]);

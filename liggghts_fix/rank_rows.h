@@ -33,7 +33,8 @@ class PfvRankRows : protected Pointers {
   };
   std::vector<double> exchanged(const std::vector<double>& rows, const Ends& from, const Ends& to, int width) const;
 
-  std::vector<int> place_;  ///< of each own row among those that leave, which stand in the order of their homes
+  /// Of each own row among those that leave, which stand in the order of their homes; empty where they stand so here.
+  std::vector<int> place_;
   Ends leaving_, arriving_;
 };
 

@@ -10,10 +10,10 @@ namespace LAMMPS_NS {
 namespace {
 
 constexpr PfvUnits known[]{
-    {"si", 1.0, 1.0, 1.0, "m", "kg", "s", "N", "Pa", "Pa s"},
-    {"cgs", 1e2, 1e3, 1.0, "cm", "g", "s", "dyne", "dyne/cm2", "P"},
-    {"micro", 1e6, 1e15, 1e6, "um", "pg", "us", "pg um/us2", "pg/(um us2)", "pg/(um us)"},
-    {"nano", 1e9, 1e21, 1e9, "nm", "ag", "ns", "ag nm/ns2", "ag/(nm ns2)", "ag/(nm ns)"}};
+    {"si", 1.0, 1.0, "m", "kg", "s", "N", "Pa", "Pa s"},
+    {"cgs", 1e2, 1e3, "cm", "g", "s", "dyne", "dyne/cm2", "P"},
+    {"micro", 1e6, 1e15, "um", "pg", "us", "pg um/us2", "pg/(um us2)", "pg/(um us)"},
+    {"nano", 1e9, 1e21, "nm", "ag", "ns", "ag nm/ns2", "ag/(nm ns2)", "ag/(nm ns)"}};
 
 /// Each name in SI and in these units.
 std::vector<std::pair<std::string, std::string>> names_in(const PfvUnits& units) {

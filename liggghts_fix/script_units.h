@@ -11,7 +11,7 @@ namespace LAMMPS_NS {
 
 struct PfvUnits {
   const char* style;                    ///< of the command `units`
-  double per_metre, per_kg, per_second; ///< how many of the script's units
+  double per_metre, per_kg;  ///< how many of the script's units
   const char *length, *mass, *time, *force, *pressure, *viscosity;
 
   double of_length(double metres) const { return metres * per_metre; }

@@ -53,13 +53,9 @@ void FixPfv::choose_ranks() {
   schedule_.share_among(ranks_.library());
 }
 
-int FixPfv::home_column() const {
-  return settings_.steps.couple_error ? PfvGrainExchange::width_with_slopes : PfvGrainExchange::returned_width;
-}
-
 PfvHomes FixPfv::homes() const {
   if (!ranks_.are_all()) return {};
-  return {per_atom_->array_atom, home_column()};
+  return {per_atom_->array_atom, ranks_.dealt.column};
 }
 
 /// How far the parts reach, m3: the boxes around the grains of each rank, within the container, added up.
@@ -103,6 +99,7 @@ void FixPfv::deal_anew() {
   files_->set_first_places(PfvSnapshot::of_columns(ids, grains_.at_homes(first_places, PfvSnapshot::width)));
   if (remembers) schedule_.remember_grains(ids, grains_.at_homes(loads, static_cast<int>(memory.rows())));
   ranks_.dealt.wanted = false;
+  ++ranks_.dealt.times;
   ranks_.dealt.spread = spread();
 }
 

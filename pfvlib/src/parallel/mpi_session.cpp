@@ -11,7 +11,8 @@ MpiSession::MpiSession() {
   int is_initialized = 0;
   MPI_Initialized(&is_initialized);
   if (is_initialized) return;
-  MPI_Init(nullptr, nullptr);
+  int provided = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);  // threads with flows of their own take turns
   is_ours_ = true;
 }
 

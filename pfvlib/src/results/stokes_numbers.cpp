@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pfv/stokes_numbers.hpp"
 
+#include "geometry/pi.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace pfv {
 
 StokesNumbers stokes_numbers(const Packing& grains, const Eigen::Ref<const Eigen::VectorXd>& masses, double viscosity) {
-  constexpr double pi = 3.14159265358979323846;
   StokesNumbers found;
   for (Eigen::Index k = 0; k < grains.velocities.cols(); ++k) {
     const bool single = grains.bodies.size() == 0 || grains.bodies[k] < 0;

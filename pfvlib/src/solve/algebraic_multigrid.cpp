@@ -4,6 +4,7 @@
 
 #include "parallel/mpi_ranks.hpp"
 #include "parallel/mpi_session.hpp"
+#include "solve/libraries_mutex.hpp"
 #include "solve/row_share.hpp"
 
 #include <HYPRE.h>
@@ -11,6 +12,7 @@
 #include <HYPRE_parcsr_ls.h>
 #include <HYPRE_utilities.h>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -155,11 +157,23 @@ void choose_method(HYPRE_Solver amg) {
   HYPRE_BoomerAMGSetPrintLevel(amg, 0);
 }
 
+/// In hypre, alone of this process' threads. Not where ranks share the rows: there each has one thread, and ranks that
+/// waited for others' turns could wait for ever.
+class Turn {
+ public:
+  explicit Turn(bool is_shared) : lock_(libraries_mutex, std::defer_lock) {
+    if (!is_shared) lock_.lock();
+  }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
 }  // namespace
 
 struct AlgebraicMultigrid::Hierarchy {
   Hierarchy(const SymmetricMatrix& given, const RowShare* shared)
-      : rows(given, shared), matrix(given, rows), right_side(rows), solution(rows) {
+      : is_shared(shared != nullptr), rows(given, shared), matrix(given, rows), right_side(rows), solution(rows) {
     HYPRE_BoomerAMGCreate(&amg);
     choose_method(amg);
     HYPRE_BoomerAMGSetup(amg, matrix.object(), right_side.object(), solution.object());
@@ -168,6 +182,7 @@ struct AlgebraicMultigrid::Hierarchy {
   Hierarchy(const Hierarchy&) = delete;
   Hierarchy& operator=(const Hierarchy&) = delete;
 
+  bool is_shared;  ///< by ranks
   Rows rows;
   HypreMatrix matrix;
   HypreVector right_side, solution;
@@ -176,12 +191,17 @@ struct AlgebraicMultigrid::Hierarchy {
 };
 
 AlgebraicMultigrid::AlgebraicMultigrid() = default;
-AlgebraicMultigrid::~AlgebraicMultigrid() = default;
+AlgebraicMultigrid::~AlgebraicMultigrid() { clear(); }
 
-void AlgebraicMultigrid::clear() { hierarchy_.reset(); }
+void AlgebraicMultigrid::clear() {
+  if (!hierarchy_) return;
+  const Turn turn(hierarchy_->is_shared);
+  hierarchy_.reset();
+}
 
 void AlgebraicMultigrid::build(const SymmetricMatrix& matrix, const RowShare* rows) {
   clear();  // its memory is the new one's
+  const Turn turn(rows != nullptr);
   HYPRE_ClearAllErrors();
   auto fresh = std::make_unique<Hierarchy>(matrix, rows);
   throw_error("the hierarchy was not built");
@@ -190,6 +210,7 @@ void AlgebraicMultigrid::build(const SymmetricMatrix& matrix, const RowShare* ro
 
 void AlgebraicMultigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
   Hierarchy& h = *hierarchy_;
+  const Turn turn(h.is_shared);
   HYPRE_ClearAllErrors();
   if (h.rows.whole) {
     h.right_side.set(r);

@@ -12,7 +12,7 @@ struct RowShare;
 
 /// hypre's BoomerAMG (Henson and Yang 2002) as a symmetric positive definite preconditioner, on the calling rank
 /// alone or on those that share the rows. Same matrix, same bytes on the same number of ranks. Starts MPI where the
-/// program has not; one thread at a time.
+/// program has not. Threads that have one each take turns, where ranks share none.
 class AlgebraicMultigrid {
  public:
   AlgebraicMultigrid();

@@ -3,30 +3,27 @@
 #pragma once
 
 #include "solve/cholesky_factor.hpp"
+#include "solve/libraries_mutex.hpp"
 
 #include <Amesos2.hpp>
 #include <Amesos2_SolverCore_def.hpp>  // the library instantiates it for its own solvers only
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
 namespace pfv {
 
-/// Trilinos counts references without atomic operations: one thread at a time is in it.
-inline std::mutex trilinos_mutex;
-
 /// Lets others in while this thread does work of its own.
-class OutsideTrilinos {
+class OutsideLibraries {
  public:
-  OutsideTrilinos() { trilinos_mutex.unlock(); }
-  ~OutsideTrilinos() { trilinos_mutex.lock(); }
-  OutsideTrilinos(const OutsideTrilinos&) = delete;
-  OutsideTrilinos& operator=(const OutsideTrilinos&) = delete;
+  OutsideLibraries() { libraries_mutex.unlock(); }
+  ~OutsideLibraries() { libraries_mutex.lock(); }
+  OutsideLibraries(const OutsideLibraries&) = delete;
+  OutsideLibraries& operator=(const OutsideLibraries&) = delete;
 };
 
 /// A Cholesky factorisation of another code as an Amesos2 solver. For one rank, where matrix and vectors
-/// are used where they lie, without a copy. Its callers hold `trilinos_mutex`.
+/// are used where they lie, without a copy. Its callers hold `libraries_mutex`.
 template <class Matrix, class Vector>
 class Amesos2Cholesky : public Amesos2::SolverCore<Amesos2Cholesky, Matrix, Vector> {
   using Base = Amesos2::SolverCore<pfv::Amesos2Cholesky, Matrix, Vector>;
@@ -96,7 +93,7 @@ class Amesos2Cholesky : public Amesos2::SolverCore<Amesos2Cholesky, Matrix, Vect
   template <class Task>
   void work(const Task& task) const {
     if (!factor_->bears_other_threads()) return task();
-    const OutsideTrilinos outside;
+    const OutsideLibraries outside;
     task();
   }
 

@@ -112,14 +112,14 @@ class Amesos2Solver final : public CheckedSolver {
         team_(std::move(team)),
         factor_(std::move(factor)) {}
   ~Amesos2Solver() override {
-    const Turn turn(trilinos_mutex);
+    const Turn turn(libraries_mutex);
     amesos2_ = {};
     solution_ = right_side_ = {};
     matrix_ = {};
   }
   void share_with(std::shared_ptr<Team> team) override {
     team_ = std::move(team);
-    const Turn turn(trilinos_mutex);
+    const Turn turn(libraries_mutex);
     if (factor_ && !amesos2_.is_null())
       Teuchos::rcp_dynamic_cast<Amesos2Cholesky<Matrix, Vector>>(amesos2_)->share_with(team_);
   }
@@ -134,7 +134,7 @@ class Amesos2Solver final : public CheckedSolver {
     std::vector<int> permutation;
     if (factor_)
       permutation = fill_reducing_ordering(ordering_, matrix, coordinates, *team_);
-    const Turn turn(trilinos_mutex);
+    const Turn turn(libraries_mutex);
     amesos2_ = {};
     matrix_ = tpetra_pattern(matrix, communicator_for(kind()));
     right_side_ = Teuchos::rcp(new Vector(matrix_->getRangeMap(), 1));
@@ -152,7 +152,7 @@ class Amesos2Solver final : public CheckedSolver {
   }
 
   bool has_pattern_of(const SymmetricMatrix& matrix) const override {
-    const Turn turn(trilinos_mutex);
+    const Turn turn(libraries_mutex);
     const auto graph = matrix_->getLocalMatrixDevice().graph;
     return matrix.column.size() == graph.entries.size() &&
            std::equal(matrix.column.begin(), matrix.column.end(), graph.entries.data()) &&
@@ -161,7 +161,7 @@ class Amesos2Solver final : public CheckedSolver {
   }
 
   void factor_values(const SymmetricMatrix& matrix) override {
-    const Turn turn(trilinos_mutex);
+    const Turn turn(libraries_mutex);
     std::copy(matrix.value.begin(), matrix.value.end(),
               matrix_->getLocalMatrixDevice().values.data());
 #ifdef PFV_WITH_MUMPS
@@ -187,7 +187,7 @@ class Amesos2Solver final : public CheckedSolver {
   }
 
   void solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
-    const Turn turn(trilinos_mutex);
+    const Turn turn(libraries_mutex);
     if (is_mixed_)
       refine(b, x);
     else

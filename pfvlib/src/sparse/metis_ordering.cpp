@@ -4,6 +4,7 @@
 #include "sparse/sparse_error.hpp"
 
 #include <metis.h>
+#include <mutex>
 #include <numeric>
 #include <string>
 
@@ -41,6 +42,8 @@ std::vector<int> metis_ordering(const SymmetricMatrix& matrix) {
   }
   idx_t size = matrix.size();
   std::vector<idx_t> inverse(permutation.size());
+  static std::mutex turn;  // all threads share METIS' random numbers, which begin anew with each ordering
+  const std::lock_guard<std::mutex> lock(turn);
   const int status =
       METIS_NodeND(&size, graph.row_begin.data(), graph.neighbour.data(), nullptr, nullptr,
                    permutation.data(), inverse.data());
