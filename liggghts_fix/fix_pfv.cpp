@@ -207,16 +207,32 @@ void FixPfv::read_host() {
   faces_.read_pistons(needs_forces());
 }
 
+/// Of grains and periodic sides, for a restart file. Of a flow on several ranks, which is incompressible, none: its
+/// grains may be dealt otherwise in another run. Where the flow is.
+std::optional<std::uint64_t> FixPfv::fingerprint_of_grains() {
+  if (ranks_.are_all()) return {};
+  PfvLeftState state = state_of(grains_);
+  state.faces.clear();
+  const auto periodic = cell_.axes();
+  for (int face = 0; face < pfv::face_count; ++face)
+    if (periodic[face / 2]) state.faces.push_back(cell_.position(face));
+  return fingerprint(state);
+}
+
+/// Since the last run, or since the restart file was written. Where the flow is.
+bool FixPfv::are_moved() {
+  if (since_.in_restart_file) return *since_.in_restart_file != fingerprint_of_grains();
+  if (!flow_.has_left()) return false;
+  follow_grains(grains_);
+  return !flow_.is_as_left(state_of(grains_));
+}
+
 /// Between runs anything may be moved or replaced: grains (displace_atoms, set), walls and meshes of the
 /// same name. The network then begins anew, as that of a new fix would, and so does an interval of
 /// couple_every, whose mean velocities would hold the displacement. Collective, after read_host.
 void FixPfv::begin_anew_where_moved() {
   int moved = 0;
-  on_flow([&] {
-    if (!flow_.has_left()) return;
-    follow_grains(grains_);
-    moved = !flow_.is_as_left(state_of(grains_));
-  });
+  on_flow([&] { moved = are_moved(); });
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
   if (!moved) return;
   on_flow([&] { flow_.begin_anew(state_of(grains_)); });
@@ -284,10 +300,8 @@ void FixPfv::setup(int) {
   begin_anew_where_moved();
   container_ = current_container();
   // fix deform changes the cell after the last flow step of a run: that is part of the next run's first interval
-  // (but a cell that has been changed by hand since a restart file was read begins anew)
-  const bool by_hand = since_.from_restart_file && !cell_.changes() && since_.steps == 0;
-  const bool goes_on = !by_hand && (since_.steps > 0 || (cell_.any() && !since_.face_positions.empty()));
-  since_.from_restart_file = false;
+  const bool goes_on = since_.steps > 0 || (cell_.any() && !since_.face_positions.empty());
+  since_.in_restart_file.reset();
   if (!goes_on) since_.face_positions = faces_.positions();
   if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
   const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, groupbit, settings_);
@@ -425,6 +439,7 @@ void FixPfv::write_restart(FILE* file) {
     if (flow_ && since_.grains.tags.empty()) since_.grains = grains_.snapshot();
     if (settings_.steps.couple_every > 1 || settings_.steps.couple_error || cell_.changes())
       record.last_grains = gathered(since_.grains, ranks_);
+    record.left = fingerprint_of_grains();
   });
   on_root([&] {
     record.written = files_->written();
@@ -440,10 +455,11 @@ void FixPfv::write_restart(FILE* file) {
 void FixPfv::restart(char* bytes) {
   everywhere([&] {
     PfvRestartRecord record = unpack(bytes);
-    since_.from_restart_file = true;
+    since_.in_restart_file = record.left;
     since_.steps = record.steps_since_flow;
     since_.time = record.elapsed;
-    since_.face_positions = record.last_positions;
+    // a file without a fingerprint cannot tell of a box that has been changed since: its sides begin anew
+    if (record.left || since_.steps > 0) since_.face_positions = record.last_positions;
     since_.cell_rates = record.cell_rates;
     schedule_.go_on_after(record.taken);
     obstacles_.restore(record.obstacles);

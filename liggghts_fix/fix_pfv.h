@@ -29,7 +29,9 @@ FixStyle(pfv,FixPfv)
 
 #include "fix.h"
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -95,6 +97,8 @@ class FixPfv : public Fix {
   void move_cell(pfv::Container& container) const;
   Eigen::Vector3d cell_lengths_then() const;
   PfvLeftState state_of(const PfvGrainExchange& grains);
+  std::optional<std::uint64_t> fingerprint_of_grains();
+  bool are_moved();
   void begin_anew_where_moved();
   void remember_state();
   void warn_of_empty_box() const;

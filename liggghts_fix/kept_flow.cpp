@@ -2,6 +2,7 @@
 #include "kept_flow.h"
 
 #include "pfv/darcy_grid.hpp"
+#include "pfv/error.hpp"
 
 #include <utility>
 
@@ -40,8 +41,17 @@ void PfvKeptFlow::leave(PfvLeftState state) {
 }
 
 void PfvKeptFlow::begin_anew(PfvLeftState found) {
-  model_->rebuild();
-  left_ = std::move(found);
+  if (model_) {
+    model_->rebuild();
+    left_ = std::move(found);
+  } else if (restored_) {
+    if (!restored_->pore_pressures.empty())
+      throw pfv::InputError("grains or periodic sides are not where the restart file has them, and the pressures of its "
+                            "compressible fluid belong to the pores there: let a `run 0` follow the fix before they are "
+                            "moved, inserted or deleted, or the box is changed");
+    restored_->strain = 0.0;
+    ++restored_->retriangulations;
+  }
 }
 
 const pfv::Report& PfvKeptFlow::report() {

@@ -36,7 +36,8 @@ class PfvKeptFlow {
   void leave(PfvLeftState state);
   /// ... the next one finds them in another, or not.
   bool is_as_left(const PfvLeftState& found) const { return !model_ || !left_ || *left_ == found; }
-  /// The network begins anew.
+  /// The network begins anew. Throws pfv::InputError where the grains of a restart file have been moved before a first
+  /// run whose pressures belong to the pores between them.
   void begin_anew(PfvLeftState found);
   bool has_left() const { return left_.has_value(); }
   void begin_run() { left_.reset(); }

@@ -5,6 +5,8 @@
 
 #include "pfv/packing.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -30,6 +32,22 @@ inline PfvLeftState left_state(const pfv::Packing& packing, const Eigen::Matrix3
   state.grains.radii = packing.radii;
   state.faces = faces;
   return state;
+}
+
+/// Of what a restart file keeps this in place of the state: two that differ have different numbers, but for one
+/// pair in 2^64 (FNV-1a, 64 bits).
+inline std::uint64_t fingerprint(const PfvLeftState& state) {
+  std::uint64_t hash = 14695981039346656037u;
+  const auto take = [&hash](const auto& values) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+    const std::size_t size = static_cast<std::size_t>(values.size()) * sizeof *values.data();
+    for (std::size_t k = 0; k < size; ++k) hash = (hash ^ bytes[k]) * 1099511628211u;
+  };
+  take(state.grains.ids);
+  take(state.grains.positions);
+  take(state.grains.radii);
+  take(state.faces);
+  return hash;
 }
 
 }  // namespace LAMMPS_NS

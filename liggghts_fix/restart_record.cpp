@@ -4,13 +4,15 @@
 #include "pfv/error.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstring>
 
 namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 8.0;
+constexpr double format_number = 9.0;
+constexpr double without_fingerprint = 8.0;
 constexpr double without_obstacles = 7.0;
 constexpr double without_counts = 6.0;      // of steps and solves
 constexpr double without_cell_rates = 5.0;  // nor these: of a periodic cell
@@ -37,6 +39,17 @@ class Reader {
  private:
   const char* bytes_;
 };
+
+/// A double holds no more than 53 bits: whether it is known, and twice 32 of them.
+std::array<double, 3> halves(const std::optional<std::uint64_t>& left) {
+  if (!left) return {};
+  return {1.0, static_cast<double>(*left >> 32), static_cast<double>(*left & 0xffffffffu)};
+}
+
+std::optional<std::uint64_t> joined(const std::vector<double>& halves) {
+  if (halves[0] == 0.0) return {};
+  return static_cast<std::uint64_t>(halves[1]) << 32 | static_cast<std::uint64_t>(halves[2]);
+}
 
 }  // namespace
 
@@ -69,13 +82,15 @@ std::vector<double> pack(const PfvRestartRecord& record) {
   append(std::array<std::int64_t, 2>{record.taken.steps, record.taken.solves});
   data.push_back(static_cast<double>(record.obstacles.size()));
   append(record.obstacles);
+  append(halves(record.left));
   return data;
 }
 
 PfvRestartRecord unpack(const char* bytes) {
   Reader reader(bytes);
   const double found = reader.next();
-  if (found != format_number && found != without_obstacles && found != without_counts && found != without_cell_rates)
+  const bool whole = found == std::floor(found);
+  if (!whole || found < without_cell_rates || found > format_number)
     throw pfv::InputError("the restart file holds this fix in form " +
                           std::to_string(static_cast<int>(found)) + " of another version, this one reads the "
                           "forms " + std::to_string(static_cast<int>(without_cell_rates)) + " to " +
@@ -107,7 +122,8 @@ PfvRestartRecord unpack(const char* bytes) {
     record.taken.steps = static_cast<std::int64_t>(reader.next());
     record.taken.solves = static_cast<std::int64_t>(reader.next());
   }
-  if (found == format_number) record.obstacles = reader.list<double>(reader.count());
+  if (found >= without_fingerprint) record.obstacles = reader.list<double>(reader.count());
+  if (found == format_number) record.left = joined(reader.list<double>(3));
   return record;
 }
 

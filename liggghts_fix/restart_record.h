@@ -8,6 +8,8 @@
 
 #include "pfv/flow_model.hpp"
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -23,6 +25,7 @@ struct PfvRestartRecord {
   PfvTaken taken;
   std::vector<PfvWrittenStep> written;
   std::vector<double> obstacles;  ///< PfvObstacles::record, or nothing
+  std::optional<std::uint64_t> left;  ///< fingerprint of grains and periodic sides; none: not known
 };
 
 std::vector<double> pack(const PfvRestartRecord& record);

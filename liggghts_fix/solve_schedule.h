@@ -10,6 +10,7 @@
 #include "pfv/solve_plan.hpp"
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <mpi.h>
 #include <optional>
@@ -26,7 +27,7 @@ struct PfvSinceSolve {
   std::vector<Eigen::Vector3d> pivots;  // of a container's faces
   PfvCellRates cell_rates{};            // of a periodic cell, over the interval that ended with it
   PfvSnapshot grains;                   // where the flow is
-  bool from_restart_file = false;       // and no run since
+  std::optional<std::uint64_t> in_restart_file;  // fingerprint of what it was written with; none after a run
 };
 
 /// The steps from one solve to the next: always the same, or the flow's own choice within an error.

@@ -18,13 +18,13 @@ class Restart(CoupledTest):
         """The script of a continued run: the same settings, the grains from the restart file."""
         return restarted_head() + fix + THERMO + dump("restarted.dump") + run
 
-    def compare(self, fix, first="run 10\n", run="run 10\n", ranks=1):
-        """Runs on and restarts; returns the rows of both runs after the restart file."""
+    def compare(self, fix, first="run 10\n", run="run 10\n", ranks=1, by_hand=""):
+        """Runs on and restarts; returns the rows of both runs after the restart file, and what is changed before."""
         head = "include in.packing\n"
-        self.liggghts(head + fix + first + "write_restart file.restart\n" + THERMO +
+        self.liggghts(head + fix + first + "write_restart file.restart\n" + by_hand + THERMO +
                       dump("continued.dump") + run, ranks=ranks)
         continued = read_thermo((self.folder / "log.liggghts").read_text())
-        self.liggghts(self.restarted(fix, run), ranks=ranks)
+        self.liggghts(self.restarted(fix + by_hand, run), ranks=ranks)
         restarted = read_thermo((self.folder / "log.liggghts").read_text())
         self.assertEqual(restarted, [row for row in continued if "flow[7]" in row])
         self.assertEqual((self.folder / "continued.dump").read_bytes(),
@@ -55,6 +55,15 @@ class Restart(CoupledTest):
 
     def test_between_two_flow_steps(self):
         self.compare(f"fix flow all pfv {WATER} couple_every 4\n")
+
+    def test_grains_that_are_moved_before_the_first_run(self):
+        """As between two runs: the interval begins anew, and the displacement is no mean velocity. (LIGGGHTS moves no
+        grains before a first run while a file's contacts wait for their history.)"""
+        forgetful = "pair_style gran model hooke/stiffness tangential no_history\npair_coeff * *\n"
+        moved = "displace_atoms all random 1e-4 1e-4 1e-4 10007 units box\n"
+        for words in ("couple_every 4", "couple_every 1", "", "couple_every 4 model darcy_grid 3 3 3"):
+            with self.subTest(words=words):
+                self.compare(f"{forgetful}fix flow all pfv {WATER} {words}\n", by_hand=moved)
 
     def test_counts_go_on(self):
         rows = self.compare(f"fix flow all pfv {FLOW} retriangulate 1e-6\n")
