@@ -58,5 +58,8 @@ if [ "${1:-}" = long ]; then
   "$root/doc/error_vs_time.py" solvers thresholds coupling coupling_5000 sizes models scaling
   "$root/doc/scaling.py" million
   "$root/tests/bench/table.py"
+  PFV_LONG=1 PFV_BUILD=$root/build PYTHONPATH=$root/build/python /usr/bin/python3 "$root/tests/python/test_start_page.py"
+  install_packages debian-packages-site.txt
+  "$root/doc/website.py"
 fi
 ctest --test-dir "$root/build" --output-on-failure -j 2

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Sourced by run.sh and test.sh with `root` set to the project's folder: what both need first.
 
-# Installs the packages of debian-packages.txt that are missing; asks for nothing when none is.
+# Installs the packages of a list (debian-packages.txt) that are missing; asks for nothing when none is.
 install_packages() {
-  local missing=() package sudo=
+  local list=${1:-debian-packages.txt} missing=() package sudo=
   while read -r package _; do
     case $package in '' | \#*) continue ;; esac
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
       missing+=("$package")
-  done < "$root/debian-packages.txt"
+  done < "$root/$list"
   [ ${#missing[@]} -eq 0 ] && return
   [ "$(id -u)" -eq 0 ] || sudo=sudo
   echo "installing: ${missing[*]}"
