@@ -5,6 +5,7 @@
 #include "physics/bead_mobility.hpp"
 #include "physics/open_water.hpp"
 #include "support/boxes.hpp"
+#include "support/containers.hpp"
 #include "support/long_steps.hpp"
 #include "support/packings.hpp"
 
@@ -98,6 +99,24 @@ TEST(OpenWater, TheCorrectionsOfPlanesFadeAndAreBounded) {
     EXPECT_EQ(contact.towards, bound.towards);
     EXPECT_GT(contact.towards, 0.2);
   }
+}
+
+// On the axis of a tube: Haberman & Sayre (1958), David Taylor Model Basin report 1143.
+TEST(OpenWater, ManySidesAroundAGrainBrakeItAsARoundWallDoes) {
+  for (const int sides : {8, 16, 32, 60})
+    for (const double ratio : {0.02, 0.05, 0.1, 0.2}) {
+      pfv::Container container = prism(sides, 1.0, 20.0);
+      container.faces[*container.face_named("top")].boundary = pfv::Boundary::pressure(0.0);
+      pfv::PackingArrays packing = packing_of({{0.0, 0.0, 10.0, ratio}});
+      packing.velocities.setZero(3, 1);
+      packing.velocities(2, 0) = 1.0;
+      pfv::Flow flow(container, viscosity_one());
+      const double drag = -flow.evaluate(packing.view(), 1e-6).total(2, 0) / (6.0 * pi * ratio);
+      const double cubed = std::pow(ratio, 3), fifth = std::pow(ratio, 5);
+      const double exact = (1.0 - 0.75857 * fifth) /
+                           (1.0 - 2.105 * ratio + 2.0865 * cubed - 1.7068 * fifth + 0.72603 * fifth * ratio);
+      EXPECT_NEAR(drag / exact, 1.0, 0.02 + 0.5 * ratio) << sides << " sides, r/R " << ratio;
+    }
 }
 
 // Two spheres that touch: Stimson & Jeffery (1926), 2 x 0.645 of one sphere's drag along their axis; Goldman, Cox &

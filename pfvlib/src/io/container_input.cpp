@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/pi.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -59,7 +62,7 @@ ContainerFace named_face(const std::string& where, const InputJson& object) {
   return face;
 }
 
-ContainerFace read_plane(const std::string& where, const InputJson& object) {
+std::vector<ContainerFace> read_plane(const std::string& where, const InputJson& object) {
   refuse_unknown(where, object, {"name", "inward_normal", "offset"});
   ContainerFace face = named_face(where, object);
   const Eigen::Vector3d inward = direction_of(where, object, "inward_normal");
@@ -67,15 +70,39 @@ ContainerFace read_plane(const std::string& where, const InputJson& object) {
   face.surface.normal = -inward / length;
   face.surface.offset = -offset / length;
   face.guide = inward / length;
-  return face;
+  return {face};
 }
 
-ContainerFace read_cylinder(const std::string& where, const InputJson& object) {
-  refuse_unknown(where, object, {"name", "axis", "point", "radius"});
+/// So many planes around, of the cylinder's section: shell_1, shell_2, ...
+std::vector<ContainerFace> flats_of(const std::string& where, const ContainerFace& round, const InputJson& count) {
+  constexpr int fewest = 3;
+  if (!count.is_number_integer() || count.get<int>() < fewest || count.get<int>() > most_faces)
+    fail(where, "\"flats\" is no whole number from " + std::to_string(fewest) + " to " + std::to_string(most_faces));
+  if (!(round.surface.radius > 0.0)) fail(where, "\"radius\" is not positive");
+  const int flats = count.get<int>();
+  const Surface& shell = round.surface;
+  const double half = pi / flats, apothem = shell.radius * std::sqrt(half / std::tan(half));
+  const Eigen::Vector3d first = shell.axis.unitOrthogonal(), second = shell.axis.cross(first);
+  std::vector<ContainerFace> faces;
+  for (int i = 0; i < flats; ++i) {
+    const double angle = (2 * i + 1) * half;
+    const Eigen::Vector3d outward = std::cos(angle) * first + std::sin(angle) * second;
+    ContainerFace face;
+    face.name = round.name + "_" + std::to_string(i + 1);
+    face.surface = Surface::plane(outward, shell.point + apothem * outward);
+    face.guide = -face.surface.normal;
+    faces.push_back(face);
+  }
+  return faces;
+}
+
+std::vector<ContainerFace> read_cylinder(const std::string& where, const InputJson& object) {
+  refuse_unknown(where, object, {"name", "axis", "point", "radius", "flats"});
   ContainerFace face = named_face(where, object);
   face.surface = Surface::cylinder(direction_of(where, object, "axis"), vector_of(where, object, "point"),
                                    number_of(where, object, "radius"));
-  return face;
+  const auto flats = object.find("flats");
+  return flats == object.end() ? std::vector<ContainerFace>{face} : flats_of(where, face, *flats);
 }
 
 template <class Make>
@@ -85,7 +112,8 @@ void add_faces(std::vector<ContainerFace>& faces, const std::string& path, const
   if (list == json.end()) return;
   if (!list->is_array()) fail(path, std::string("\"") + kind + "\" is no list");
   for (std::size_t i = 0; i < list->size(); ++i)
-    faces.push_back(make(path + ", " + kind + " " + std::to_string(i + 1), (*list)[i]));
+    for (ContainerFace& face : make(path + ", " + kind + " " + std::to_string(i + 1), (*list)[i]))
+      faces.push_back(std::move(face));
 }
 
 }  // namespace

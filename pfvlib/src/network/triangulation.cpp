@@ -254,8 +254,10 @@ void refuse_lone_spheres(const Triangulation& result, const Spheres& spheres) {
   if (alone.empty()) return;
   sort_by_ids(alone, spheres);
   throw InputError(sphere_list(spheres.ids, alone) +
-                       ": too few others stand around it within a cylinder for pores to exist there; give "
-                       "it a container of planes in place of the cylinder, or more spheres",
+                       ": too few others stand around it in the cylinder for pores to exist there, but ones that reach "
+                       "around the axis; for grains that move through the fluid take flats in place of the cylinder "
+                       "(container file: \"flats\": 32; fix: `container flats`); a flow through a tube with so few "
+                       "grains is more water than bed and has no good answer with this method (doc/container.md)",
                    {{spheres.ids[alone.front()]}, {}});
 }
 

@@ -1,0 +1,179 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables of doc/container.md:  doc/containers.py [BUILD]
+
+Permeability and forces beside finite elements, one sphere in a tube, and dense beds in cylinders beside correlations that
+know of the wall. Ends with status 1 where a bound does not hold. A minute or two of CPU, most of it LIGGGHTS'.
+"""
+import csv
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+BUILD = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build"
+os.environ["PFV_BIN"] = str(BUILD / "bin")
+sys.path.insert(0, str(ROOT / "inputs/common"))
+import numpy as np
+import scene
+
+DATA = ROOT / "tests/data"
+BEDS = ROOT / "inputs/boiling"  # its script pours the beds
+WITHIN = {"permeability": 0.05, "median force": 0.08, "worst force": 0.25, "correlation": 0.15}
+failed = []
+
+
+def held(what, value, bound):
+    if not abs(value) <= bound:
+        failed.append(f"{what}: {value:.3g}, wanted within {bound:g}")
+
+
+def rows_of(name):
+    with open(DATA / name, newline="", encoding="ascii") as file:
+        return list(csv.DictReader(file))
+
+
+def solve(folder, spheres, container, wall, *words):
+    """Report and forces of `pfv solve`, pressure 1 at the bottom and 0 at the top; spheres: x, y, z, radius."""
+    text = "".join(f"{k},{x!r},{y!r},{z!r},{r!r}\n" for k, (x, y, z, r) in enumerate(spheres, 1))
+    (folder / "packing.csv").write_text("id,x,y,z,radius\n" + text)
+    (folder / "room.json").write_text(json.dumps(container))
+    report = scene.pfv_solve(folder, "packing.csv", "room.json", 1.0, "report.json", "--wall", wall, "--face",
+                             "bottom:pressure=1", "--face", "top:pressure=0", "--forces", "forces.csv", *words)
+    with open(folder / "forces.csv", newline="", encoding="ascii") as file:
+        forces = np.array([[float(row[k]) for k in ("fx", "fy", "fz")] for row in csv.DictReader(file)])
+    return report, forces
+
+
+def between(bottom, top):
+    return [{"name": "bottom", "inward_normal": [0, 0, 1], "offset": bottom},
+            {"name": "top", "inward_normal": [0, 0, -1], "offset": -top}]
+
+
+def cylinder(radius, bottom, top, **more):
+    return {"planes": between(bottom, top),
+            "cylinders": [{"name": "shell", "axis": [0, 0, 1], "point": [0, 0, 0], "radius": radius, **more}]}
+
+
+def prism(sides, apothem, height):
+    planes = between(0.0, height)
+    for i in range(sides):
+        angle = 2.0 * math.pi * (i + 0.5) / sides
+        planes.append({"name": f"side{i}", "inward_normal": [-math.cos(angle), -math.sin(angle), 0.0],
+                       "offset": -apothem})
+    return {"planes": planes}
+
+
+def wedge():
+    tilt = math.radians(25.0)
+    return {"planes": between(0.0, 1.0) + [
+        {"name": "x0", "inward_normal": [1, 0, 0], "offset": 0.0},
+        {"name": "y0", "inward_normal": [0, 1, 0], "offset": 0.0},
+        {"name": "y1", "inward_normal": [0, -1, 0], "offset": -0.8},
+        {"name": "tilted", "inward_normal": [-math.cos(tilt), 0.0, -math.sin(tilt)], "offset": -math.cos(tilt)}]}
+
+
+def room(case):
+    if case in ("cylinder", "wedge"):
+        return cylinder(0.5, 0.0, 0.75) if case == "cylinder" else wedge()
+    sides = int(case.split()[0])
+    of_area = math.sqrt(math.pi / (sides * math.tan(math.pi / sides)))
+    return prism(sides, 0.5 * (of_area if case.endswith("equal area") else 1.0), 0.75)
+
+
+def finite_elements(folder):
+    print("| container | walls | K over finite elements | force, median | worst |\n|---|---|---|---|---|")
+    for row in rows_of("containers_permeability.csv"):
+        beads = [tuple(float(b[k]) for k in ("x", "y", "z", "radius")) for b in rows_of(row["packing"])]
+        exact = np.array([[float(f[k]) for k in ("fx", "fy", "fz")] for f in rows_of(row["forces"])])
+        report, forces = solve(folder, beads, room(row["case"]), row["wall"])
+        ratio = report["permeability"] / float(row["permeability"])
+        errors = np.sort(np.linalg.norm(forces - exact, axis=1) / np.linalg.norm(exact, axis=1))
+        median, worst = errors[len(errors) // 2], errors[-1]
+        print(f"| {row['case']} | {row['wall']} | {ratio:.3f} | {100 * median:.1f} % | {100 * worst:.1f} % |")
+        for what, value in (("permeability", ratio - 1), ("median force", median), ("worst force", worst)):
+            held(f"{row['case']}, {row['wall']}, {what}", value, WITHIN[what])
+
+
+def sphere_in_tube(folder):
+    """F / (6 pi mu a u_max), u_max = 2 Q / (pi R2): the cylinder as 32 flats, as one sphere is refused in a round one."""
+    print("\n| r/R | length/R | walls | finite elements | 32 flats | over |\n|---|---|---|---|---|---|")
+    for row in rows_of("stokes_tube_sphere.csv"):
+        radius, length, exact = (float(row[k]) for k in ("radius", "length", "factor"))
+        report, forces = solve(folder, [(0.0, 0.0, 0.0, radius)],
+                               cylinder(1.0, -0.5 * length, 0.5 * length, flats=32), row["wall"])
+        found = forces[0, 2] / (12.0 * radius * report["outflow"])
+        print(f"| {radius:g} | {length:g} | {row['wall']} | {exact:.4g} | {found:.4g} | {found / exact:.2f} |")
+    try:
+        solve(folder, [(0.0, 0.0, 0.0, 0.2)], cylinder(1.0, -5.0, 5.0), "no_slip")
+        failed.append("one sphere in a round tube is not refused")
+    except scene.Failure as error:
+        print(f"\nround: {error}")
+
+
+# Stokes drag as ΔP/L = A (1-e)² mu U / (e³ d²) with the mean porosity e. N = D/d.
+def wall_and_beads(porosity, ratio):
+    """Surface of beads and tube over that of the beads."""
+    return 1.0 + 2.0 / (3.0 * (1.0 - porosity) * ratio)
+
+
+CORRELATIONS = {
+    # Ergun (1952), Chemical Engineering Progress 48, 89; Mehta & Hawley (1969), I&EC Process Des. Dev. 8, 280
+    "Ergun, Mehta & Hawley": lambda e, n: 150.0 * wall_and_beads(e, n)**2,
+    # Eisfeld & Schnitzlein (2001), Chemical Engineering Science 56, 4321: spheres
+    "Eisfeld & Schnitzlein": lambda e, n: 154.0 * wall_and_beads(e, n)**2,
+    # Di Felice & Gibilaro (2004), Chemical Engineering Science 59, 3037: Ergun's, with the velocity of the core
+    "Di Felice & Gibilaro": lambda e, n: 150.0 / (2.06 - 1.06 * ((n - 1.0) / n)**2),
+    # Cheng (2011), Powder Technology 210, 261
+    "Cheng": lambda e, n: 185.0 + 17.0 * e / (1.0 - e) * (n / (n - 1.0))**2,
+}
+
+
+def pour(folder, ratio, friction, beads):
+    """Beads of 0.9, 1 and 1.1 mm poured into a cylinder: x, y, z, radius, and its radius, m."""
+    radius, seeds = 0.5e-3, scene.primes(1)
+    tube = ratio * radius
+    height = beads * 4.0 / 3.0 * math.pi * radius**3 / (math.pi * tube**2) / 0.15
+    scene.liggghts(BEDS, "in.prepare", {
+        "shape": "cylinder", "N": beads, "r": radius, "kn": 1e3, "mu": friction, "R": tube, "W": tube,
+        "height": height + 0.1, "fill": height, "out": str(folder / "bed"),
+        **{f"s{k + 1}": prime for k, prime in enumerate(seeds)}}, str(folder / "bed"))
+    return np.loadtxt(folder / "bed_bed.dump", skiprows=9)[:, 2:6], tube
+
+
+def dense_beds(folder):
+    print("\n| D/d | beads | porosity | K, m² | K over " + " | ".join(CORRELATIONS) + " |\n" + "|---" *
+          (4 + len(CORRELATIONS)) + "|")
+    for ratio, friction in ((6, 0.0), (8, 0.0), (10, 0.0), (14, 0.0), (10, 0.4)):
+        spheres, tube = pour(folder, ratio, friction, round(15 * ratio**2))
+        z, diameter = spheres[:, 2], 1e-3
+        low, high = 2.0 * diameter, z.max() - 2.0 * diameter
+        inside = spheres[(z > low) & (z < high)]
+        volumes, areas = inside[:, 3]**3, inside[:, 3]**2
+        sauter = 2.0 * volumes.sum() / areas.sum()
+        porosity = 1.0 - 4.0 / 3.0 * volumes.sum() / (tube**2 * (high - low))
+        report, _ = solve(folder, [tuple(map(float, s)) for s in inside], cylinder(tube, low, high), "no_slip")
+        own = 2.0 * tube / sauter
+        over = {}
+        for name, factor in CORRELATIONS.items():
+            over[name] = report["permeability"] * factor(porosity, own) * (1.0 - porosity)**2 / porosity**3 / sauter**2
+        print(f"| {own:.1f} | {len(inside)} | {porosity:.3f} | {report['permeability']:.3e} | " +
+              " | ".join(f"{value:.3f}" for value in over.values()) + " |")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        finite_elements(folder)
+        sphere_in_tube(folder)
+        dense_beds(folder)
+    print(*(f"FAILED {what}" for what in failed), sep="\n")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
