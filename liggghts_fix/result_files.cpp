@@ -165,12 +165,17 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
   };
   write(fluid, flow.fields());
   write("grains", pfv::grid_of_spheres(packing, flow.forces(), sphere_fields(flow, packing, unwrapped)));
+  const std::vector<pfv::FaceResult>& faces = flow.faces();
   written_.push_back({step, flow.time()});
   if (!are_written_) return;
+  const pfv::FieldGrid walls = pfv::grid_of_walls(flow.container(), faces);
+  if (!walls.types.empty()) pfv::write_fields(file_of(stem, step, "walls", ".vtu"), walls);
   std::vector<pfv::CollectionEntry> entries;
   for (const PfvWrittenStep& one : written_) {
     entries.push_back({one.time, 0, head_of(stem, one, fluid)});
     entries.push_back({one.time, 1, head_of(stem, one, "grains")});
+    const std::string drawn = file_of(stem, one.step, "walls", ".vtu");
+    if (std::filesystem::exists(drawn)) entries.push_back({one.time, 2, file_name_of(drawn)});
   }
   pfv::write_collection(fields_->path, entries);
 }

@@ -278,7 +278,8 @@ namespace {
 /// One output must neither replace another nor the packing.
 void check_outputs(const SolveRequest& request) {
   std::vector<std::string> taken{request.packing};
-  for (const auto& output : {request.forces, request.report, request.vtk, request.culprits}) {
+  const auto walls = request.vtk ? walls_beside(*request.vtk) : std::nullopt;
+  for (const auto& output : {request.forces, request.report, request.vtk, request.culprits, walls}) {
     if (!output) continue;
     require_folder_of(*output);
     for (const std::string& other : taken)
@@ -307,7 +308,8 @@ void add_output_options(CLI::App& command, SolveArguments& arguments) {
   command.add_option("--vtk", arguments.vtk,
                      "pores (pressure in Pa, fluid volume in m3) and throats\n"
                      "(conductance in m3/(Pa s), flux in m3/s), or cells (porosity,\n"
-                     "permeability in m2, velocity in m/s) for ParaView\n"
+                     "permeability in m2, velocity in m/s) for ParaView;\n"
+                     "the walls and their loads go to FILE_walls.vtu\n"
                      "(default: not written); on several ranks FILE.pvtu and a\n"
                      "piece a rank")
       ->option_text("FILE.vtu")->group(group);

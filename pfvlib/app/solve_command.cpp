@@ -157,9 +157,13 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Dea
   if (request.forces)
     write_forces(*request.forces, first_spheres(packing.rows(), grains),
                  first_forces(packing.forces_of_rows(flow.forces()), grains), ranks);
+  const auto walls = request.vtk ? walls_beside(*request.vtk) : std::nullopt;
   const auto write = [&] {
     if (!speaks(ranks)) return;
     if (request.report) write_report(*request.report, report);
+    if (!walls) return;
+    const FieldGrid drawn = grid_of_walls(flow.container(), report.faces);
+    if (!drawn.types.empty()) write_fields(*walls, drawn);
   };
   if (ranks) ranks->together(write);
   else write();

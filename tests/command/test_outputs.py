@@ -182,7 +182,7 @@ class Outputs(CommandTest):
                             *THROUGH_FLOW)
         self.assertEqual(result.stdout.count("\n"), 3)
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
-                         ["f.csv", "n.vtu", "r.json"])
+                         ["f.csv", "n.vtu", "n_walls.vtu", "r.json"])
 
     def test_an_output_may_go_to_standard_output_alone(self):
         result = self.solve("--forces", "/dev/stdout", *THROUGH_FLOW)

@@ -33,8 +33,8 @@ class Output(CoupledTest):
         entries = self.collection()
         self.assertEqual([(part, file) for _, part, file in entries], [
             (str(part), f"flow_{what}_{step}.vtu") for step in (0, 10, 20, 30)
-            for part, what in enumerate(("pores", "grains"))])
-        for (time, _, file), step in zip(entries[::2], (0, 10, 20, 30)):
+            for part, what in enumerate(("pores", "grains", "walls"))])
+        for (time, _, file), step in zip(entries[::3], (0, 10, 20, 30)):
             self.assertAlmostEqual(time, step * 1e-5, delta=1e-15)
         for _, _, file in entries:
             self.assertGreater((self.folder / "post" / file).stat().st_size, 1000)
@@ -93,7 +93,7 @@ class Output(CoupledTest):
         self.liggghts(HEAD + fix + "run 10\nwrite_restart file.restart\nrun 10\n")
         whole = (self.folder / "p.csv").read_bytes()
         entries = self.collection()
-        self.assertEqual(len(entries), 10)
+        self.assertEqual(len(entries), 15)
         self.liggghts(restarted_head() + fix + "run 10\n")
         self.assertEqual((self.folder / "p.csv").read_bytes(), whole)
         self.assertEqual(self.collection(), entries)

@@ -17,10 +17,16 @@ struct Field {
   Eigen::MatrixXd values;
 };
 
+/// A text for each cell.
+struct TextField {
+  std::string name;
+  std::vector<std::string> values;
+};
+
 /// What can be drawn: an unstructured grid with fields on its points and cells.
 struct FieldGrid {
-  /// VTK's numbers of cells: a point; two points; eight corners of a box, x running fastest.
-  enum CellType : std::uint8_t { vertex = 1, line = 3, voxel = 11 };
+  /// VTK's numbers of cells: a point; two points; corners of a face in order; eight of a box, x running fastest.
+  enum CellType : std::uint8_t { vertex = 1, line = 3, polygon = 7, voxel = 11 };
 
   Eigen::Matrix3Xd points;                  ///< m
   std::vector<std::int64_t> connectivity;   ///< points of each cell
@@ -28,6 +34,7 @@ struct FieldGrid {
   std::vector<std::uint8_t> types;          ///< of each cell
   std::vector<std::int64_t> point_ids;      ///< written as `id`, unless there are none
   std::vector<Field> of_points, of_cells;
+  std::vector<TextField> texts_of_cells;
 
   void add_cell(CellType type, const std::vector<std::int64_t>& corners) {
     connectivity.insert(connectivity.end(), corners.begin(), corners.end());

@@ -7,6 +7,7 @@
 #include "pfv/packing.hpp"
 #include "pfv/report.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,8 @@ PackingArrays read_packing(const std::string& path);
 
 /// Reads a container: JSON {"planes": [{"name", "inward_normal": [x, y, z], "offset"}, ...], "cylinders": [{"name",
 /// "axis": [x, y, z], "point": [x, y, z], "radius"}, ...]}, m; inside: inward_normal . x >= offset, and within each
-/// cylinder. The inward normal need not be a unit vector; the offset scales with it. Throws InputError naming
-/// file and entry.
+/// cylinder. The inward normal need not be a unit vector; the offset scales with it. A cylinder with "flats": N is N planes
+/// around of its section, named shell_1 ... shell_N where it is named shell. Throws InputError naming file and entry.
 Container read_container(const std::string& path);
 
 // Every writer writes beside the target and renames at the end: a file is whole or absent.
@@ -49,13 +50,22 @@ void write_spheres(const std::string& path, const Packing& packing, const Forces
 /// The same to be written.
 FieldGrid grid_of_spheres(const Packing& packing, const Forces& forces, const std::vector<Field>& more = {});
 
+/// The walls of a container as polygons to be drawn: a plane's part of it, a cylinder as flat strips and its ends as their
+/// polygons; none along periodic axes. Of each cell the face's `name`, kind of `wall` ("open" where fluid crosses) and
+/// `boundary`, its number `face`, `velocity` in its middle (m/s) and, of the whole face, `area` (m²), and of its result, where
+/// there is one, `flux` (m³/s, into the container), `force`, `force_pressure` and `force_viscous` (N).
+FieldGrid grid_of_walls(const Container& container, const std::vector<FaceResult>& results = {});
+
+/// FILE_walls.vtu for FILE.vtu or FILE.pvtu; absent for any other name (a device, a pipe).
+std::optional<std::string> walls_beside(const std::string& path);
+
 /// The spheres and places that an error is about as points of a .vtu: id (-1 for a place) and radius (0).
 void write_culprits(const std::string& path, const Packing& packing, const Culprits& culprits);
 
 /// One time step of a .pvd collection; `file` is relative to the collection's folder.
 struct CollectionEntry {
   double time;  ///< s
-  int part;     ///< 0 pores, 1 grains
+  int part;     ///< 0 pores, 1 grains, 2 walls
   std::string file;
 };
 void write_collection(const std::string& path, const std::vector<CollectionEntry>& entries);

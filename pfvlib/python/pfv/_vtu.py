@@ -54,12 +54,12 @@ class Grid:
 
 
 def collection(path):
-    """[(time, file of the fluid, file of the grains)] of a .pvd, in order."""
+    """[(time, file of the fluid, of the grains, of the walls or None)] of a .pvd, in order."""
     path, steps = pathlib.Path(path), {}
     try:
         entries = list(ElementTree.parse(path).getroot().iter("DataSet"))
         for entry in entries:
-            files = steps.setdefault(float(entry.get("timestep")), [None, None])
+            files = steps.setdefault(float(entry.get("timestep")), [None, None, None])
             files[int(entry.get("part"))] = path.parent / entry.get("file")
     except (OSError, ElementTree.ParseError, TypeError, ValueError, IndexError) as problem:
         raise InputError(f"{path}: is no collection of fix pfv's output ({problem})") from None

@@ -329,7 +329,7 @@ def animation(path, picture, color=None, cut=None, throats=False, frames=40):
     chosen = [steps[k] for k in np.unique(np.linspace(0, len(steps) - 1, min(frames, len(steps))).round().astype(int))]
     of_pores = throats or cut is not None
     views = [_View(fluid if of_pores else grains, color, cut, throats, grains if cut is not None else None)
-             for _, fluid, grains in chosen]
+             for _, fluid, grains, _ in chosen]
     norms, bounds = [view.norm() for view in views], [view.bounds() for view in views]
     norm = type(norms[0])(min(one.vmin for one in norms), max(one.vmax for one in norms))
     room = np.min([low for low, _ in bounds], axis=0), np.max([high for _, high in bounds], axis=0)

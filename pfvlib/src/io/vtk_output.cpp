@@ -59,9 +59,10 @@ std::string text_of(const FieldGrid& grid, bool with_ids) {
     add(file, grid.of_points);
     file.end("PointData");
   }
-  if (!grid.of_cells.empty()) {
+  if (!grid.of_cells.empty() || !grid.texts_of_cells.empty()) {
     file.begin("CellData");
     add(file, grid.of_cells);
+    for (const TextField& field : grid.texts_of_cells) file.add(field.name.c_str(), field.values);
     file.end("CellData");
   }
   return file.text();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace pfv::detail {
 
@@ -41,12 +42,15 @@ class VtuFile {
   /// `numbers` times `components` values.
   template <class Number>
   void add(const char* name, const Number* values, std::int64_t numbers, int components = 1) {
-    head_ += std::string("<DataArray type=\"") + VtkType<Number>::name + "\" Name=\"" + name +
-             "\" NumberOfComponents=\"" + std::to_string(components) +
-             "\" format=\"appended\" offset=\"" + std::to_string(arrays_.size()) + "\"/>\n";
-    const std::uint64_t bytes = static_cast<std::uint64_t>(numbers) * components * sizeof(Number);
-    arrays_.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
-    if (bytes > 0) arrays_.append(reinterpret_cast<const char*>(values), bytes);
+    append(VtkType<Number>::name, name, components, values,
+           static_cast<std::uint64_t>(numbers) * components * sizeof(Number));
+  }
+
+  /// Texts, each ended by a zero.
+  void add(const char* name, const std::vector<std::string>& texts) {
+    std::string all;
+    for (const std::string& text : texts) all.append(text.c_str(), text.size() + 1);
+    append("String", name, 1, all.data(), all.size());
   }
 
   std::string text() const {
@@ -55,6 +59,13 @@ class VtuFile {
   }
 
  private:
+  void append(const char* type, const char* name, int components, const void* values, std::uint64_t bytes) {
+    head_ += std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+             std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(arrays_.size()) + "\"/>\n";
+    arrays_.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
+    if (bytes > 0) arrays_.append(static_cast<const char*>(values), bytes);
+  }
+
   std::string head_, arrays_;
 };
 
