@@ -12,8 +12,8 @@ from markdown_links import CODE, LINK, PLACE, ROOT, is_external, pages
 FRONT = ROOT / "doc/start.md"
 NOTEBOOKS = ROOT / "doc/notebooks"
 GROUPS = {  # what is not named comes last
-    "Use": "README doc/user_guide doc/fix_pfv doc/python doc/settings doc/container doc/periodic doc/conventions "
-           "doc/from_couple_cfd doc/from_flow_engine doc/what_changed",
+    "Use": "README doc/user_guide doc/fix_pfv doc/python doc/settings doc/file_variants doc/container doc/periodic "
+           "doc/conventions doc/from_couple_cfd doc/from_flow_engine doc/what_changed",
     "Method": "doc/method doc/accuracy doc/open_water doc/darcy_grid doc/solvers doc/stability doc/couple_every",
     "Results": "doc/experiments doc/oedometer doc/waves doc/error_vs_time doc/scaling doc/benchmarks doc/extremes",
     "Notebooks": "doc/notebooks/index",

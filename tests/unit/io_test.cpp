@@ -166,7 +166,7 @@ TEST_F(InputOutput, DumpThatIsCutOffIsRefusedWhereverTheCutIs) {
   expect_refusal(whole + "ITEM: TIM", ":12: ", "cut off");
   expect_refusal(whole + snapshot(1, plain_columns, "5 1 0.1 0.2 0.3 0.05 \n"), ":21: ",
                  "after 1 of 2 atoms");
-  expect_refusal(whole + snapshot(1, plain_columns, "5 1 0.1 0.2"), ":21: ", "4 fields");
+  expect_refusal(whole + snapshot(1, plain_columns, "5 1 0.1 0.2"), ":21: ", "after 4 of 6 fields");
 }
 
 TEST_F(InputOutput, DumpRefusalsNameLineAndField) {

@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::string_view item = "ITEM:";
 constexpr std::string_view step_item = "ITEM: TIMESTEP";
-constexpr std::string_view time_item = "ITEM: TIME\n";
 
 /// A snapshot in the text of a dump.
 struct Snapshot {
@@ -28,11 +27,19 @@ std::string_view line_after(std::string_view text, std::size_t begin) {
   return trimmed(text.substr(start + 1, text.find('\n', start + 1) - start - 1));
 }
 
-/// Newer LAMMPS writes the time in an item of its own before that of the step.
-std::size_t begin_of_time_item(std::string_view text, std::size_t step_begin) {
-  const std::size_t window = std::min<std::size_t>(step_begin, 80);
-  const std::size_t found = text.substr(0, step_begin).rfind(time_item);
-  return found != std::string_view::npos && found + window >= step_begin ? found : step_begin;
+/// Newer LAMMPS writes units and time before the step, in items of a line each.
+std::size_t begin_of_head(std::string_view text, std::size_t begin, std::optional<double>& time) {
+  const auto line_before = [&](std::size_t place) {
+    const std::size_t end = text.rfind('\n', place - 2);
+    return place < 2 ? std::size_t{0} : end == std::string_view::npos ? 0 : end + 1;
+  };
+  for (;;) {
+    const std::size_t above = line_before(line_before(begin));
+    const std::string_view heading = trimmed(text.substr(above, text.find('\n', above) - above));
+    if (above == begin || (heading != "ITEM: TIME" && heading != "ITEM: UNITS")) return begin;
+    if (heading == "ITEM: TIME") time = finite_number(line_after(text, above));
+    begin = above;
+  }
 }
 
 std::vector<Snapshot> snapshots_of(std::string_view text) {
@@ -40,9 +47,8 @@ std::vector<Snapshot> snapshots_of(std::string_view text) {
   for (std::size_t begin = text.find(step_item); begin != std::string_view::npos;
        begin = text.find(step_item, begin + 1)) {
     Snapshot snapshot{begin, text.size(), integer(line_after(text, begin)), {}};
-    const std::size_t time_begin = begin_of_time_item(text, begin);
-    if (time_begin != begin) snapshot.time = finite_number(line_after(text, time_begin));
-    if (!snapshots.empty()) snapshots.back().end = time_begin;
+    const std::size_t head = begin_of_head(text, begin, snapshot.time);
+    if (!snapshots.empty()) snapshots.back().end = head;
     snapshots.push_back(snapshot);
   }
   return snapshots;
@@ -170,6 +176,8 @@ PackingFile read_snapshot(const std::string& path, std::string_view text, const 
   while (lines.next()) {
     if (starts_with(lines.line(), "ITEM: NUMBER OF ATOMS")) atoms = read_number_of_atoms(lines);
     if (starts_with(lines.line(), "ITEM: BOX BOUNDS")) file.bounds = read_bounds(lines);
+    if (starts_with(lines.line(), "ITEM: ENTRIES"))
+      lines.fail("ITEM: ENTRIES instead of ITEM: ATOMS: a dump of contacts or other pairs; give that of the grains");
     constexpr std::string_view heading = "ITEM: ATOMS";
     if (!starts_with(lines.line(), heading)) continue;
     if (atoms < 0) lines.fail("no ITEM: NUMBER OF ATOMS before this line: write the dump anew");

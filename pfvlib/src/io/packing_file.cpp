@@ -9,6 +9,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -51,6 +52,10 @@ std::string other_kind(std::string_view text) {
       {"\xFD" "7zXZ", "is packed with xz: unpack it first (unxz)"},
       {"PK\x03\x04", "is a zip archive or a spreadsheet: unpack it, or save the sheet as CSV"},
       {"\x28\xB5\x2F\xFD", "is packed with zstd: unpack it first (unzstd)"},
+      {"7z\xBC\xAF\x27\x1C", "is a 7z archive: unpack it first"},
+      {"Rar!", "is a rar archive: unpack it first"},
+      {"%PDF", "is a PDF: give the numbers as text"},
+      {"{\\rtf", "is rich text: save it as plain text"},
       {"\xFF\xFE", "is UTF-16 text: save it as UTF-8"},
       {"\xFE\xFF", "is UTF-16 text: save it as UTF-8"},
       {"\x93NUMPY", "is a NumPy array: write it with numpy.savetxt, or use the Python module"},
@@ -60,11 +65,15 @@ std::string other_kind(std::string_view text) {
       {"{", "is JSON: give a table with columns id, x, y, z, radius"},
       {"[", "is JSON: give a table with columns id, x, y, z, radius"},
       {"<html", "is a web page"},
-      {"<!DOCTYPE", "is a web page"}};
+      {"<!DOCTYPE", "is a web page"},
+      {"<?xml", "is XML, but no VTK file: give a table, a dump or points of a VTK file"}};
   if (starts_with(text, "solid") && text.substr(0, 4096).find("facet") != std::string_view::npos)
     return "is an STL mesh, which holds no spheres: give the grains' file";
+  if (text.substr(std::min<std::size_t>(257, text.size()), 5) == "ustar") return "is a tar archive: unpack it first";
   for (const Kind& kind : kinds)
     if (starts_with(text, kind.start)) return kind.what;
+  if (text.substr(0, 4096).find("\natom_style") != std::string_view::npos)
+    return "is a script of LIGGGHTS: give a dump or a data file";
   if (text.substr(0, 4096).find('\0') != std::string_view::npos)
     return "is binary: give text (a dump written with dump_modify binary no, or a table)";
   return {};
@@ -94,7 +103,7 @@ PackingFile read_any(const std::string& path, std::string_view text, const Packi
   if (starts_with(begin, "# vtk DataFile")) return read_legacy_vtk(path, text);
   if (const std::string kind = other_kind(begin); !kind.empty()) throw InputError(path + ":1: " + kind);
   if (is_data_file(text)) return read_data_file(path, text);
-  return read_table(path, text, choice.length_unit != 1.0);
+  return read_table(path, text, choice.length_unit);
 }
 
 void apply_unit(PackingFile& file, double unit) {
@@ -112,7 +121,9 @@ void apply_unit(PackingFile& file, double unit) {
 }  // namespace detail
 
 PackingFile read_packing_file(const std::string& path, const PackingChoice& choice) {
-  const std::string content = detail::whole_file(path);
+  std::string content = detail::whole_file(path);
+  if (content.find('\n') == std::string::npos)  // lines of an old Mac, or one line
+    std::replace(content.begin(), content.end(), '\r', '\n');
   PackingFile file = detail::read_any(path, content, choice);
   detail::apply_unit(file, choice.length_unit);
   return file;

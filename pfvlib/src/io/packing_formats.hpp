@@ -17,7 +17,7 @@ inline bool starts_with(std::string_view text, std::string_view start) {
 }
 
 // Each takes the file's text, and throws InputError naming line and field.
-PackingFile read_table(const std::string& path, std::string_view text, bool lengths_have_a_unit);
+PackingFile read_table(const std::string& path, std::string_view text, double length_unit);
 PackingFile read_dump(const std::string& path, std::string_view text, const PackingChoice& choice);
 PackingFile read_data_file(const std::string& path, std::string_view text);
 PackingFile read_legacy_vtk(const std::string& path, std::string_view text);

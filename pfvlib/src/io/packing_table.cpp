@@ -5,20 +5,38 @@
 #include "text/number_text.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
 
 namespace pfv::detail {
 namespace {
 
-/// Tabs among blanks are blanks.
+/// Tabs among blanks are blanks, tabs beside commas or semicolons as well.
 char separator_of(std::string_view line) {
-  if (line.find(';') != std::string_view::npos) return ';';
   Words fields;
+  for (const char separator : {';', ','}) {
+    split(line, separator, fields);
+    const bool tabs = std::any_of(fields.begin(), fields.end(), [](std::string_view field) {
+      return field.find('\t') != std::string_view::npos;
+    });
+    if (fields.size() > 1 && (separator == ';' || !tabs)) return separator;
+  }
   split(line, '\t', fields);
   const bool tabs = fields.size() > 1 && std::none_of(fields.begin(), fields.end(), [](std::string_view field) {
     return plain_name(field).find(' ') != std::string::npos;
   });
   if (tabs) return '\t';
   return line.find(',') != std::string_view::npos ? ',' : ' ';
+}
+
+const char* name_of_separator(char separator) {
+  return separator == ';' ? "semicolons" : separator == ',' ? "commas" : separator == '\t' ? "tabs" : "blanks";
+}
+
+/// Of `#`, of Matlab, and the first line that Excel reads its separator from.
+bool is_comment(std::string_view line) {
+  return line.front() == '#' || line.front() == '%' || (starts_with(line, "sep=") && line.size() == 5);
 }
 
 void split_fields(std::string_view line, char separator, Words& fields) {
@@ -51,7 +69,7 @@ Words format_names(std::string_view comment) {
 Words names_in_comment(std::string_view comment) {
   Words names = format_names(comment);
   if (!names.empty()) return names;
-  comment.remove_prefix(std::min(comment.find_first_not_of("# \t"), comment.size()));
+  comment.remove_prefix(std::min(comment.find_first_not_of("#% \t"), comment.size()));
   split_fields(comment, separator_of(comment), names);
   const auto has = [&](const char* name) {
     return std::any_of(names.begin(), names.end(), [&](std::string_view one) { return plain_name(one) == name; });
@@ -60,57 +78,122 @@ Words names_in_comment(std::string_view comment) {
   return header ? names : Words();
 }
 
+/// What a unit of length is in m; nothing for one that is not known, as that of a density.
+std::optional<double> metres_of(std::string_view unit) {
+  struct Unit {
+    std::string_view name;
+    double metres;
+  };
+  constexpr Unit units[]{{"m", 1.0},  {"km", 1e3},    {"cm", 1e-2},      {"mm", 1e-3},
+                         {"um", 1e-6}, {"nm", 1e-9},   {"in", 0.0254},    {"inch", 0.0254},
+                         {"ft", 0.3048}, {"\xC2\xB5m", 1e-6}, {"\xCE\xBCm", 1e-6}};  // both signs of micro
+  for (const Unit& one : units)
+    if (unit == one.name) return one.metres;
+  return {};
+}
+
 /// Units of lengths and velocities in names, which `--length-unit` has to agree with.
-void refuse_units(const TextLines& lines, const Words& names, bool lengths_have_a_unit) {
+void refuse_units(const TextLines& lines, const Words& names, double length_unit) {
   for (const std::string_view name : names) {
-    const std::string_view unit = unit_in(name), length = unit.substr(0, unit.find('/'));
-    if (lengths_have_a_unit && (unit == "m" || unit == "m/s"))
-      lines.fail("column " + detail::quoted(name) + " is in m, and --length-unit names another unit for all of them");
-    if (lengths_have_a_unit) continue;
-    for (const std::string_view other : {"mm", "cm", "um", "nm", "km", "in", "ft", "inch"})
-      if (length == other)
-        lines.fail("column " + detail::quoted(name) + " is not in m: give the file's unit with --length-unit");
+    const std::string_view unit = unit_in(name);
+    const std::string_view length = unit.substr(0, unit.find('/'));
+    const auto metres = metres_of(length);
+    if (!metres || std::abs(*metres - length_unit) <= 1e-9 * length_unit) continue;
+    if (length_unit == 1.0)
+      lines.fail("column " + detail::quoted(name) + " is not in m: give the file's unit with --length-unit");
+    lines.fail("column " + detail::quoted(name) + " is in " + std::string(length) +
+               ", and --length-unit names another unit for all of them");
   }
 }
 
 [[noreturn]] void fail_without_header(const TextLines& lines, std::size_t fields) {
+  if (fields == 1)
+    lines.fail("is a number alone, as an xyz file begins with: it names no columns; write a table with a header "
+               "id,x,y,z,radius or a dump");
   lines.fail("has " + std::to_string(fields) + " numbers where the names of the columns are expected: put a "
              "line like id,x,y,z,radius above");
 }
 
+/// Where a line has not as many fields as there are names: what is likely to be the cause.
+void explain_fields(const TextLines& lines, char separator, std::size_t fields, std::size_t names) {
+  const std::string counts = "has " + std::to_string(fields) + " fields instead of " + std::to_string(names);
+  if (const char other = separator_of(lines.line()); other != separator && fields == 1)
+    lines.fail(std::string("is separated by ") + name_of_separator(other) + ", and the names of the columns by " +
+               name_of_separator(separator) + ": separate all lines alike");
+  if (separator == ',' && (fields == 2 * names || fields + 1 == 2 * names))  // all numbers, or all but the id
+    lines.fail(counts + ", as of numbers with a comma: write a decimal point");
+}
+
+/// Header and lines of a table.
+class TableReader {
+ public:
+  TableReader(const std::string& path, std::string_view text, double length_unit)
+      : path_(path), lines_(path, text), length_unit_(length_unit),
+        most_lines_(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'))) {}
+
+  PackingFile read() {
+    find_names();
+    SphereTable table(find_columns(lines_, names_));
+    table.reserve(most_lines_);
+    for (bool more = first_is_data_ || next(); more; more = next()) {
+      if (fields_.size() != names_.size()) explain_fields(lines_, separator_, fields_.size(), names_.size());
+      table.add(lines_, fields_);
+    }
+    file_.packing = table.arrays(path_);
+    if (!table.has_ids()) file_.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
+    return std::move(file_);
+  }
+
+ private:
+  /// The next line that is no comment; false at the end.
+  bool next() {
+    do
+      if (!lines_.next_filled()) return false;
+    while (is_comment(lines_.line()));
+    split_fields(lines_.line(), separator_, fields_);
+    // a separator behind the last field of lines, or of the names, alone
+    if (fields_.size() == names_.size() + 1 && fields_.back().empty()) fields_.pop_back();
+    if (fields_.size() + 1 == names_.size() && names_.back().empty()) fields_.emplace_back();
+    return true;
+  }
+
+  /// From the first line that is no comment, or, where that holds numbers, from the comments above.
+  void find_names() {
+    do {
+      if (!lines_.next_filled())
+        throw InputError(path_ + ": is empty: give a header id,x,y,z,radius and one line a sphere");
+      if (!is_comment(lines_.line())) break;
+      if (Words names = names_in_comment(lines_.line()); !names.empty()) names_ = std::move(names);
+    } while (true);
+    separator_ = separator_of(lines_.line());
+    split_fields(lines_.line(), separator_, fields_);
+    Words filled = fields_;
+    if (filled.back().empty()) filled.pop_back();
+    first_is_data_ = all_numbers(filled);
+    if (first_is_data_) fields_ = filled;
+    if (!first_is_data_) names_ = fields_;
+    if (names_.empty() && fields_.size() == 4) {
+      names_ = {"x", "y", "z", "r"};
+      file_.remarks.push_back("there are no names of columns: the four were taken as x, y, z and radius");
+    }
+    if (names_.empty()) fail_without_header(lines_, fields_.size());
+    refuse_units(lines_, names_, length_unit_);
+  }
+
+  std::string path_;
+  TextLines lines_;
+  double length_unit_;
+  std::size_t most_lines_;
+  char separator_ = ' ';
+  Words names_, fields_;
+  bool first_is_data_ = false;  // of the line that find_names() stops at
+  PackingFile file_;
+};
+
 }  // namespace
 
-PackingFile read_table(const std::string& path, std::string_view text, bool lengths_have_a_unit) {
-  TextLines lines(path, text);
-  std::string_view comment;
-  PackingFile file;
-  do {
-    if (!lines.next_filled())
-      throw InputError(path + ": is empty: give a header id,x,y,z,radius and one line a sphere");
-    if (lines.line().front() == '#') comment = lines.line();
-  } while (lines.line().front() == '#');
-  const char separator = separator_of(lines.line());
-  Words fields, names;
-  split_fields(lines.line(), separator, fields);
-  const bool numbers = all_numbers(fields);
-  if (numbers) names = names_in_comment(comment);
-  if (numbers && names.empty() && fields.size() == 4) {
-    names = {"x", "y", "z", "r"};
-    file.remarks.push_back("there are no names of columns: the four were taken as x, y, z and radius");
-  }
-  if (numbers && names.empty()) fail_without_header(lines, fields.size());
-  refuse_units(lines, numbers ? names : fields, lengths_have_a_unit);
-  SphereTable table(find_columns(lines, numbers ? names : fields));
-  table.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
-  if (numbers) table.add(lines, fields);
-  while (lines.next_filled()) {
-    if (lines.line().front() == '#') continue;
-    split_fields(lines.line(), separator, fields);
-    table.add(lines, fields);
-  }
-  file.packing = table.arrays(path);
-  if (!table.has_ids()) file.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
-  return file;
+PackingFile read_table(const std::string& path, std::string_view text, double length_unit) {
+  return TableReader(path, text, length_unit).read();
 }
 
 }  // namespace pfv::detail

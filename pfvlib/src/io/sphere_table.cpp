@@ -127,6 +127,9 @@ void SphereTable::reserve(std::size_t spheres) {
 }
 
 void SphereTable::add(const TextLines& lines, const Words& fields) {
+  if (fields.size() < columns_.fields && !lines.ended())
+    lines.fail("the file is cut off inside this line, after " + std::to_string(fields.size()) + " of " +
+               std::to_string(columns_.fields) + " fields");
   if (fields.size() != columns_.fields)
     lines.fail("has " + std::to_string(fields.size()) + " fields instead of " +
                std::to_string(columns_.fields) + ": give one for each column");

@@ -34,6 +34,7 @@ class TextLines {
   bool next() {
     if (rest_.empty()) return false;
     const std::size_t end = rest_.find('\n');
+    ended_ = end != std::string_view::npos;
     line_ = trimmed(rest_.substr(0, end));
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
     ++number_;
@@ -48,6 +49,8 @@ class TextLines {
 
   std::string_view line() const { return line_; }
   std::size_t number() const { return number_; }
+  /// False for a last line that nothing ends, as where the file is cut off.
+  bool ended() const { return ended_; }
   std::string place() const { return file_ + ":" + std::to_string(number_) + ": "; }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(place() + what); }
 
@@ -55,6 +58,7 @@ class TextLines {
   std::string file_;
   std::string_view rest_, line_;
   std::size_t number_;
+  bool ended_ = true;
 };
 
 /// Splits at every `separator` and trims; into `fields`, whose memory is used again.
