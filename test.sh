@@ -15,7 +15,9 @@ install_packages
 build_project
 
 echo "unit tests under the address and undefined-behaviour sanitizers"
-cmake -S "$root" --preset sanitize > /dev/null
+pointers=OFF  # checks of each access by a pointer, beside those of its address
+[ "${1:-}" = long ] && pointers=ON
+cmake -S "$root" --preset sanitize -DPFV_SANITIZE_POINTERS=$pointers > /dev/null
 cmake --build "$root/build-sanitize" --target unit_tests
 # leaks: in the long test, without the slowness of both
 ASAN_OPTIONS=detect_leaks=0 in_two_halves "$root/build-sanitize/bin/unit_tests" --gtest_brief=1

@@ -369,7 +369,7 @@ void FixPfv::after_flow_call() {
   on_flow([&] {
     flow_.forget_report();
     obstacles_.take_loads(grains_, flow_->forces());
-    files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep, ranks_.library().get());
+    files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep, ranks_);
     if (files_->history_due(update->ntimestep))
       files_->write_history(history_row(*flow_, flow_.report(), stokes(), update->ntimestep, schedule_.taken()));
   });

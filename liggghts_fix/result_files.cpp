@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -134,7 +135,7 @@ void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWritt
 }
 
 void PfvResultFiles::write(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                           const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const pfv::Ranks* ranks) {
+                           const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const PfvFlowRanks& ranks) {
   if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, unwrapped, step, ranks);
   if (profile_file_ && profile_file_->due(step)) profile_file_->write_row(profile_row(flow));
   if (flux_file_ && flux_file_->due(step)) flux_file_->write_row(flux_row(flow));
@@ -157,13 +158,18 @@ std::string PfvResultFiles::head_of(const std::string& stem, const PfvWrittenSte
 }
 
 void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                                  const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const pfv::Ranks* ranks) {
+                                  const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const PfvFlowRanks& ranks) {
   const std::string stem = fields_->path.substr(0, fields_->path.rfind(".pvd")), fluid = flow.field_name();
   const auto write = [&](const std::string& what, const pfv::FieldGrid& grid) {
-    if (ranks) pfv::write_fields(file_of(stem, step, what, ".pvtu"), grid, *ranks);
+    if (ranks.are_all()) pfv::write_fields(file_of(stem, step, what, ".pvtu"), grid, *ranks.library());
     else pfv::write_fields(file_of(stem, step, what, ".vtu"), grid);
   };
   write(fluid, flow.fields());
+  if (!first_) {
+    double last = packing.size() > 0 ? static_cast<double>(packing.ids.maxCoeff()) : 0.0;
+    ranks.take_largest(&last, 1);
+    first_ = First{flow.container().upper - flow.container().lower, static_cast<std::int64_t>(last)};
+  }
   write("grains", pfv::grid_of_spheres(packing, flow.forces(), sphere_fields(flow, packing, unwrapped)));
   const std::vector<pfv::FaceResult>& faces = flow.faces();
   written_.push_back({step, flow.time()});
@@ -205,12 +211,24 @@ Eigen::Matrix3Xd PfvResultFiles::displacements(const pfv::Packing& packing, cons
   return moved;
 }
 
+/// For strains; grains that came after the first ones have no place before that would go with theirs.
+pfv::Displaced PfvResultFiles::displaced(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
+                                         const Eigen::Matrix3Xd& displacements) const {
+  pfv::Displaced moved{unwrapped, unwrapped - displacements, first_->edges};
+  for (Eigen::Index k = 0; k < packing.size(); ++k)
+    if (packing.ids[k] > first_->last_tag) moved.before.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+  return moved;
+}
+
 /// Displacements, and what the model with pores knows of each sphere.
 std::vector<pfv::Field> PfvResultFiles::sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
                                                       const Eigen::Matrix3Xd& unwrapped) {
-  std::vector<pfv::Field> fields{{"displacement", displacements(packing, unwrapped)}};
-  if (const auto* pores = dynamic_cast<const pfv::Flow*>(&flow))
-    for (pfv::Field& field : pores->sphere_fields()) fields.push_back(std::move(field));
+  const Eigen::Matrix3Xd moved = displacements(packing, unwrapped);
+  std::vector<pfv::Field> fields{{"displacement", moved}};
+  const auto* pores = dynamic_cast<const pfv::Flow*>(&flow);
+  if (!pores) return fields;
+  for (auto& more : {pores->sphere_fields(), pores->strain_fields(displaced(packing, unwrapped, moved))})
+    fields.insert(fields.end(), more.begin(), more.end());
   return fields;
 }
 

@@ -4,10 +4,11 @@
 #define LMP_PFV_RESULT_FILES_H
 
 #include "arguments.h"
+#include "flow_ranks.h"
 #include "grain_exchange.h"
 #include "history.h"
 
-#include "pfv/flow_model.hpp"
+#include "pfv/flow.hpp"
 #include "pfv/io.hpp"
 
 #include <cstdint>
@@ -72,9 +73,9 @@ class PfvResultFiles {
   /// Writes what is due after a flow step, at the flow's own time: LIGGGHTS' `time` begins anew at
   /// each restart. Throws pfv::FileError.
   /// `unwrapped`: positions without the wrapping of periodic axes, which displacements are told from.
-  /// `ranks`: those that share the flow, null for one; collective among them.
+  /// `ranks`: those that hold the flow; collective among them.
   void write(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
-             std::int64_t step, const pfv::Ranks* ranks);
+             std::int64_t step, const PfvFlowRanks& ranks);
   /// Where these grains were when they were first written, for grains that are dealt anew.
   PfvSnapshot first_places() const;
   void set_first_places(const PfvSnapshot& places);
@@ -83,7 +84,7 @@ class PfvResultFiles {
 
  private:
   void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
-                    std::int64_t step, const pfv::Ranks* ranks);
+                    std::int64_t step, const PfvFlowRanks& ranks);
   std::string head_of(const std::string& stem, const PfvWrittenStep& one, const std::string& what) const;
   PfvNamedRow profile_row(const pfv::FlowModel& flow) const;
   PfvNamedRow flux_row(const pfv::FlowModel& flow) const;
@@ -91,6 +92,8 @@ class PfvResultFiles {
   std::vector<pfv::Field> sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
                                         const Eigen::Matrix3Xd& unwrapped);
   Eigen::Matrix3Xd displacements(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped);
+  pfv::Displaced displaced(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
+                           const Eigen::Matrix3Xd& displacements) const;
 
   bool are_written_;
   std::optional<PfvFieldOutput> fields_;
@@ -100,6 +103,13 @@ class PfvResultFiles {
   std::vector<PfvWrittenStep> written_;
   std::optional<PfvRowFile> profile_file_, flux_file_, sensor_file_, history_file_;
   std::map<std::int64_t, Eigen::Vector3d> first_places_;  ///< by tag
+  /// When grains were first written: the edges of the container, m, and the highest tag on any rank. Grains that
+  /// come later have higher ones.
+  struct First {
+    Eigen::Vector3d edges;
+    std::int64_t last_tag;
+  };
+  std::optional<First> first_;
 };
 
 }  // namespace LAMMPS_NS

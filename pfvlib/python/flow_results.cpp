@@ -23,6 +23,14 @@ int axis_of(py::handle given) {
   throw InputError("there is no axis '" + name + "': give x, y, z or 0, 1, 2");
 }
 
+py::array sphere_strains_of(FlowHost& host, py::handle now, py::handle before, py::object edges, py::object tilt) {
+  const auto places_now = rows_of_three(now, "now"), places_before = rows_of_three(before, "before");
+  Displaced moved{columns_of(places_now), columns_of(places_before)};
+  if (!edges.is_none()) moved.edges_before = vector_of(edges, "edges_before");
+  if (!tilt.is_none()) moved.tilt_before = vector_of(tilt, "tilt_before");
+  return array_of(host.ask_of<Flow>([&moved](Flow& flow) { return flow.sphere_strains(moved); }));
+}
+
 Eigen::VectorXd pressures_of(FlowModel& model) {
   if (auto* grid = dynamic_cast<DarcyGrid*>(&model)) return grid->cell_pressures();
   return dynamic_cast<Flow&>(model).pore_pressures();
@@ -151,6 +159,15 @@ void add_velocities(py::class_<FlowHost>& flow) {
            }, R"({name: values} of all fields of the spheres, N or N x 3 or N x 6, as the files of grains have them.
 
 Tensors in VTK's order: xx, yy, zz, xy, yz, xz. Cost: as `faces`, and a pass over cells and facets.)");
+  flow.def("sphere_strains", &sphere_strains_of, "now"_a, "before"_a, "edges_before"_a = py::none(),
+           "tilt_before"_a = py::none(),
+           R"(Strain of the packing around each sphere between two instants, N x 6: xx, yy, zz, xy, xz, yz.
+
+now, before: N x 3 places, m, in the order of the packing; in a periodic cell without wrapping, with the lengths
+edges_before (and tilt_before: xy, xz, yz) of the cell. A row of `before` that is not finite: the sphere was not there.
+The mean displacement gradient of the tetrahedra around the sphere (Catalano 2012, eqs. 2.20-2.21), over places
+before; extension positive; exact for affine motions of any size. 0 where no tetrahedron without a wall is left.
+Cost: a pass over the cells. Raises InputError for arrays of another shape.)");
   flow.def("viscosity_matrices", [](FlowHost& host, const std::vector<int>& rows) {
              return array_of(host.ask_of<Flow>([&rows](Flow& f) { return f.viscosity_matrices(rows); }));
            }, "rows"_a, R"(Drag of each of these spheres moving alone: the force on it is -V v. n x 3 x 3, N s/m.

@@ -6,6 +6,8 @@ import subprocess
 import unittest
 import xml.etree.ElementTree as ElementTree
 
+import numpy
+
 from coupled import BIN, EDGE, FLOW, WATER, CoupledTest, dump, packing, random_velocities, read_dump
 from coupled import read_thermo, restarted_head, write_data
 
@@ -209,6 +211,27 @@ class Output(CoupledTest):
         moved = vtk_to_numpy(grid.GetPointData().GetArray("displacement"))
         self.assertGreater(abs(moved).max(), 1e-9)
         self.assertTrue((moved == places[10] - places[0]).all())
+
+    def test_strain_of_grains_that_move_affinely(self):
+        """They pass through each other without a force; one comes later and has no strain."""
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+        grains = packing(4)
+        write_data(self.folder, grains, {grain[0]: (2 * grain[2], 0.0, -30 * grain[3]) for grain in grains})
+        self.liggghts(HEAD + "neigh_modify exclude type 1 1\nunfix integr\nfix integr all nve/noforce\n" +
+                      f"fix flow all pfv {FLOW} output 10 flow.pvd\nrun 10\n"
+                      "create_atoms 1 single 0.051 0.049 0.052\nset atom 65 diameter 0.004 density 2600\nrun 90\n")
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(str(self.folder / "flow_grains_100.vtu"))
+        reader.Update()
+        data = reader.GetOutput().GetPointData()
+        ids, strain, deviator = (vtk_to_numpy(data.GetArray(name)) for name in ("id", "strain", "strain_deviator"))
+        time = 100 * 1e-5
+        exact = numpy.array([0, 0, -30, 1, 0, 0]) * time  # xx yy zz xy yz xz
+        numpy.testing.assert_allclose(strain[ids <= 64], numpy.tile(exact, (64, 1)), atol=1e-9)
+        numpy.testing.assert_allclose(deviator[ids <= 64], time * (2 / 3 * (600 + 2)) ** 0.5, atol=1e-9)
+        self.assertEqual(list(ids[ids > 64]), [65])
+        self.assertFalse(strain[ids > 64].any())
 
     def closing_permeability(self, screen):
         """(m2, estimated error %, share of the dissipation in degenerate throats %) as printed."""

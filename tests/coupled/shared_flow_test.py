@@ -191,11 +191,12 @@ class SharedFlow(CoupledTest):
             reader.Update()
             data = reader.GetOutput().GetPointData()
             arrays = {name: vtk_to_numpy(data.GetArray(name)) for name in
-                      ("id", "displacement", "force", "fluid_velocity", "fluid_stress")}
+                      ("id", "displacement", "force", "fluid_velocity", "fluid_stress", "strain", "strain_deviator")}
             order = numpy.argsort(arrays["id"])
             found[ranks] = {name: values[order] for name, values in arrays.items()}
         self.assertGreater(numpy.abs(found[1]["displacement"]).min(axis=0)[0], 0.011)
-        for name, tolerance in (("id", 0), ("displacement", 1e-12), ("force", 1e-8), ("fluid_velocity", 1e-8), ("fluid_stress", 1e-8)):
+        for name, tolerance in (("id", 0), ("displacement", 1e-12), ("force", 1e-8), ("fluid_velocity", 1e-8), ("fluid_stress", 1e-8),
+                                ("strain", 1e-8), ("strain_deviator", 1e-8)):
             scale = numpy.abs(found[1][name]).max()
             numpy.testing.assert_allclose(found[3][name], found[1][name], rtol=0, atol=tolerance * scale, err_msg=name)
 

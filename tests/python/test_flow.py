@@ -130,6 +130,15 @@ class Answers(unittest.TestCase):
         np.testing.assert_allclose(drag, drag.transpose(0, 2, 1), rtol=1e-9)
         self.assertTrue((np.linalg.eigvalsh(drag) > 0).all())
 
+    def test_strains_of_an_affine_motion(self):
+        stretch = np.array([[-0.1, 0.02, 0], [0, 0.05, 0.04], [0.06, 0, -0.2]])
+        now = self.bed.positions
+        strains = self.flow.sphere_strains(now, now @ np.linalg.inv(np.eye(3) + stretch).T)
+        exact = (stretch + stretch.T) / 2
+        np.testing.assert_allclose(strains, np.tile(exact[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]], (len(now), 1)), atol=1e-12)
+        with self.assertRaisesRegex(pfv.InputError, "one for each sphere"):
+            self.flow.sphere_strains(now, now[1:])
+
     def test_fields_hold_the_pressures(self):
         fields = self.flow.fields()
         pores = self.flow.network().pores

@@ -107,7 +107,7 @@ TEST(Obstacles, ClosedMeshesHaveTheirVolumeAndNoSphereStandsOut) {
       {sphere_mesh(Vector::Zero(), 0.5, 2), 0.0}, {block_mesh(Vector::Constant(-0.5), Vector::Constant(0.5)), 1.0},
       {cylinder_mesh(Vector::Zero(), 0.3, 1.0, 32), 16 * std::sin(2 * M_PI / 32) * 0.09}};
   for (const auto& [mesh, volume] : bodies)
-    for (const double diameter : {0.2, 0.1}) {
+    for (const double diameter : {0.2, 0.125}) {
       const pfv::Obstacle found = pfv::obstacle_of_mesh(mesh, diameter, "body ");
       EXPECT_EQ(found.solids, 1);
       EXPECT_EQ(found.sheets, 0);

@@ -150,7 +150,7 @@ TEST(RebuildLag, GivesTheSameBytesInEveryRun) {
   for (const Fluid& fluid : {Fluid{}, compressible})
     for (const Step& step : {Step(explicit_step), Step(staged_step)}) {
       std::vector<Eigen::Matrix3Xd> first;
-      for (const int threads : {1, 1, 2}) {
+      for (const int threads : {1, 2}) {
         Options options = lagging();
         options.threads = threads;
         Flow flow(Column().box, fluid, options);

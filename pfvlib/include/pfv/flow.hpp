@@ -30,6 +30,13 @@ struct EmptySpace {
 /// A sentence where there is much of it (more than 5 %), else nothing.
 std::optional<std::string> warning_of(const EmptySpace& empty);
 
+/// Places of a packing's spheres at two instants, a column each, m; in a periodic cell those without wrapping.
+struct Displaced {
+  Eigen::Matrix3Xd now;
+  Eigen::Matrix3Xd before;  ///< not finite: the sphere was not there
+  Eigen::Vector3d edges_before = Eigen::Vector3d::Zero(), tilt_before = Eigen::Vector3d::Zero();  ///< of a periodic cell
+};
+
 /// Flow through the pores of a moving packing: the only owner of state, which alone knows what is out of date.
 ///
 ///     pfv::Flow flow(box, fluid, options);
@@ -113,7 +120,18 @@ class Flow final : public FlowModel {
   /// Mean stress (Pa, tension positive) that the fluid's tractions cause in each sphere, rows xx, yy, zz,
   /// xy, xz, yz: in an even pressure p it is -p, -p, -p, 0, 0, 0. 6 x N; 0 for hidden and left-out ones.
   Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_stresses() const;
-  /// These and all others that a sphere has, by name, a column a sphere of the packing: `fluid_velocity` (m/s),
+  /// Strain of the packing around each sphere (Catalano 2012, eqs. 2.20-2.21): the mean gradient of the displacement
+  /// from `before` to `now` in the tetrahedra around it, whose outer facets join its neighbours' centres, taken from the
+  /// displacements of these on the facets; symmetric part, over places before, extension positive. Rows xx, yy, zz,
+  /// xy, xz, yz: 6 x N; exact where all moved affinely, however far. Tetrahedra with walls or spheres that were not
+  /// there take no part; 0 where none is left, where the neighbours' tetrahedra have grown tenfold (they came from
+  /// elsewhere), for hidden and left-out spheres. Cost: a pass over the cells. Collective on several ranks. Throws
+  /// InputError where columns are not the packing's or a place now is not finite.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_strains(const Displaced& moved) const;
+  /// The same as files have it: `strain`, in the order of Field, and `strain_deviator`, sqrt(2/3 e:e) of its part e
+  /// without change of volume.
+  std::vector<Field> strain_fields(const Displaced& moved) const;
+  /// Velocities and stresses and all others that a sphere has, by name, a column a sphere of the packing: `fluid_velocity` (m/s),
   /// `fluid_stress` (Pa, in the order of Field). Cost: as faces() and a pass over cells and facets.
   std::vector<Field> sphere_fields() const;
   /// Flow rate (m³/s, positive along the axis) between the pores on either side of a plane. In a steady flow

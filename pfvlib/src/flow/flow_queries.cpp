@@ -6,6 +6,7 @@
 #include "results/network_fields.hpp"
 #include "results/network_report.hpp"
 #include "results/sphere_fields.hpp"
+#include "results/sphere_strains.hpp"
 #include "results/viscosity_matrices.hpp"
 #include "step/forces.hpp"
 
@@ -108,6 +109,14 @@ Eigen::Matrix3Xd Flow::sphere_velocities() const {
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_stresses() const {
   return pfv::sphere_stresses(parts_->network(), parts_->solution, parts_->keeper.packed());
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic> Flow::sphere_strains(const Displaced& moved) const {
+  return pfv::sphere_strains(parts_->network(), parts_->container, moved, parts_->keeper.packed());
+}
+
+std::vector<Field> Flow::strain_fields(const Displaced& moved) const {
+  return pfv::strain_fields(sphere_strains(moved));
 }
 
 std::vector<Field> Flow::sphere_fields() const {
