@@ -365,7 +365,12 @@ PackingFile read_legacy_vtk(const std::string& path, std::string_view text) {
   WordReader words(path, text.substr(start));
   Points points;
   while (words.next()) {
-    if (words.word() == "POINTS") {
+    if (words.word() == "DATASET") {
+      const std::string type(words.take("a type"));
+      if (type != "POLYDATA" && type != "UNSTRUCTURED_GRID")
+        throw InputError(path + ": is a " + type + ", a grid without spheres (as the bounding box that LIGGGHTS writes "
+                         "beside each dump): give the file of the grains");
+    } else if (words.word() == "POINTS") {
       points.count = words.take_count("the number of points");
       words.take("a type");
       points.places = words.take_numbers(3 * points.count, "POINTS");
