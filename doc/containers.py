@@ -115,22 +115,57 @@ def sphere_in_tube(folder):
         print(f"\nround: {error}")
 
 
-# Stokes drag as ΔP/L = A (1-e)² mu U / (e³ d²) with the mean porosity e. N = D/d.
+# Stokes drag as ΔP/L = A (1-e)² mu U / (e³ d²) with the mean porosity e, as reviews quote them. N = D/d.
 def wall_and_beads(porosity, ratio):
     """Surface of beads and tube over that of the beads."""
     return 1.0 + 2.0 / (3.0 * (1.0 - porosity) * ratio)
 
 
 CORRELATIONS = {
+    # Carman (1937), Transactions of the Institution of Chemical Engineers 15, 150: no wall
+    "Carman": lambda e, n: 180.0,
     # Ergun (1952), Chemical Engineering Progress 48, 89; Mehta & Hawley (1969), I&EC Process Des. Dev. 8, 280
     "Ergun, Mehta & Hawley": lambda e, n: 150.0 * wall_and_beads(e, n)**2,
     # Eisfeld & Schnitzlein (2001), Chemical Engineering Science 56, 4321: spheres
     "Eisfeld & Schnitzlein": lambda e, n: 154.0 * wall_and_beads(e, n)**2,
-    # Di Felice & Gibilaro (2004), Chemical Engineering Science 59, 3037: Ergun's, with the velocity of the core
-    "Di Felice & Gibilaro": lambda e, n: 150.0 / (2.06 - 1.06 * ((n - 1.0) / n)**2),
     # Cheng (2011), Powder Technology 210, 261
     "Cheng": lambda e, n: 185.0 + 17.0 * e / (1.0 - e) * (n / (n - 1.0))**2,
 }
+
+
+SMALLEST_WITH_CORE = 5.0  # D/d
+
+
+def core_speed(ratio):
+    """Di Felice & Gibilaro (2004), Chemical Engineering Science 59, 3037: mean velocity over that of the core."""
+    return 2.06 - 1.06 * ((ratio - 1.0) / ratio)**2
+
+
+def porosity_of_core(spheres, tube, low, high):
+    """Of what is further than a diameter from the wall, by the porosity of 20000 places."""
+    random, reach = np.random.default_rng(1), tube - 2.0 * spheres[:, 3].mean()
+    radius, angle = reach * np.sqrt(random.uniform(size=20000)), random.uniform(0.0, 2.0 * math.pi, 20000)
+    places = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), random.uniform(low, high, 20000)])
+    solid = np.zeros(len(places), bool)
+    for x, y, z, r in spheres:
+        solid |= ((places - (x, y, z))**2).sum(axis=1) < r * r
+    return 1.0 - solid.mean()
+
+
+def beside_correlations(name, spheres, tube, low, high, permeability):
+    """Spheres whose centres lie between low and high."""
+    sauter = 2.0 * (spheres[:, 3]**3).sum() / (spheres[:, 3]**2).sum()
+    porosity = 1.0 - 4.0 / 3.0 * (spheres[:, 3]**3).sum() / (tube**2 * (high - low))
+    ratio = 2.0 * tube / sauter
+    core = porosity_of_core(spheres, tube, low, high) if ratio > SMALLEST_WITH_CORE else None
+    over = [permeability * law(porosity, ratio) * (1.0 - porosity)**2 / porosity**3 / sauter**2
+            for law in CORRELATIONS.values()]
+    words = [f"{value:.2f}" for value in over]
+    if core:
+        words.append(f"{permeability * 150.0 * (1.0 - core)**2 / core**3 / sauter**2 / core_speed(ratio):.2f}")
+    print(f"| {name} | {ratio:.1f} | {len(spheres)} | {porosity:.3f} | " + (f"{core:.3f}" if core else "-") + " | " +
+          " | ".join(words + ([] if core else ["-"])) + " |", flush=True)
+    return dict(zip(CORRELATIONS, over))
 
 
 def pour(folder, ratio, friction, beads):
@@ -145,24 +180,38 @@ def pour(folder, ratio, friction, beads):
     return np.loadtxt(folder / "bed_bed.dump", skiprows=9)[:, 2:6], tube
 
 
+def resistance(folder, spheres, tube, low, high):
+    """Of the spheres whose centres lie between two planes, Pa s/m³."""
+    inside = spheres[(spheres[:, 2] > low) & (spheres[:, 2] < high)]
+    report, _ = solve(folder, [tuple(map(float, s)) for s in inside], cylinder(tube, low, high), "no_slip")
+    return 1.0 / report["outflow"]
+
+
+def permeability_of_middle(folder, spheres, tube, low, high):
+    """Where planes cut a bed, spheres are missing behind them: halves and whole tell what two such ends do."""
+    middle = 0.5 * (low + high)
+    whole = resistance(folder, spheres, tube, low, high)
+    halves = resistance(folder, spheres, tube, low, middle) + resistance(folder, spheres, tube, middle, high)
+    return (high - low) / (math.pi * tube**2 * (2.0 * whole - halves))
+
+
 def dense_beds(folder):
-    print("\n| D/d | beads | porosity | K, m² | K over " + " | ".join(CORRELATIONS) + " |\n" + "|---" *
-          (4 + len(CORRELATIONS)) + "|")
+    print("\n| K of | D/d | beads | porosity | of the core | over " + " | ".join(CORRELATIONS) +
+          " | Di Felice & Gibilaro |\n" + "|---" * (6 + len(CORRELATIONS)) + "|")
+    beads = np.array([[float(b[k]) for k in ("x", "y", "z", "radius")] for b in rows_of("cyl_equal_packing.csv")])
+    exact = float(rows_of("containers_permeability.csv")[0]["permeability"])
+    beside_correlations("finite elements", beads, 0.5, 0.0, 0.75, exact)
     for ratio, friction in ((6, 0.0), (8, 0.0), (10, 0.0), (14, 0.0), (10, 0.4)):
-        spheres, tube = pour(folder, ratio, friction, round(15 * ratio**2))
-        z, diameter = spheres[:, 2], 1e-3
-        low, high = 2.0 * diameter, z.max() - 2.0 * diameter
-        inside = spheres[(z > low) & (z < high)]
-        volumes, areas = inside[:, 3]**3, inside[:, 3]**2
-        sauter = 2.0 * volumes.sum() / areas.sum()
-        porosity = 1.0 - 4.0 / 3.0 * volumes.sum() / (tube**2 * (high - low))
-        report, _ = solve(folder, [tuple(map(float, s)) for s in inside], cylinder(tube, low, high), "no_slip")
-        own = 2.0 * tube / sauter
-        over = {}
-        for name, factor in CORRELATIONS.items():
-            over[name] = report["permeability"] * factor(porosity, own) * (1.0 - porosity)**2 / porosity**3 / sauter**2
-        print(f"| {own:.1f} | {len(inside)} | {porosity:.3f} | {report['permeability']:.3e} | " +
-              " | ".join(f"{value:.3f}" for value in over.values()) + " |")
+        spheres, tube = pour(folder, ratio, friction, round(12 * ratio**2))
+        low, high = 2e-3, spheres[:, 2].max() - 2e-3
+        found = permeability_of_middle(folder, spheres, tube, low, high)
+        inside = spheres[(spheres[:, 2] > low) & (spheres[:, 2] < high)]
+        over = beside_correlations("this" if friction == 0 else f"this, friction {friction:g}", inside, tube, low, high,
+                                   found)
+        held(f"D/d {ratio}, friction {friction:g}, K over Cheng's - 1", over["Cheng"] - 1, WITHIN["correlation"])
+        if ratio >= 8:
+            held(f"D/d {ratio}, friction {friction:g}, K over Eisfeld's and Schnitzlein's - 1",
+                 over["Eisfeld & Schnitzlein"] - 1, WITHIN["correlation"])
 
 
 def main():

@@ -143,13 +143,30 @@ class Output(CoupledTest):
                          [(0, 0), (4, 1), (8, 2), (12, 3), (16, 4)])
         self.assertEqual(float(rows[-1]["patch 1 on face xlo pressure"]), 5.0)
 
-    def test_history_of_a_container_has_its_names(self):
+    def drawn(self, name):
+        """[(name, force along z) of each wall] of a file."""
+        try:
+            from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+        except ImportError:
+            self.skipTest("VTK's Python module is not installed")
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(str(self.folder / name))
+        reader.Update()
+        data = reader.GetOutput().GetCellData()
+        names, forces = data.GetAbstractArray("name"), data.GetArray("force")
+        return [(names.GetValue(k), forces.GetTuple(k)[2]) for k in range(names.GetNumberOfValues())]
+
+    def test_history_and_drawn_walls_of_a_container_have_its_names(self):
         faces = " ".join(f"face {name} plane {place} {normal} {more}" for name, place, normal, more in (
             ("left", "0 0 0", "1 0 0", ""), ("right", "0.1 0 0", "-1 0 0", ""), ("front", "0 0 0", "0 1 0", ""),
             ("back", "0 0.1 0", "0 -1 0", ""), ("under,ground", "0 0 0", "0 0 1", "pressure 10"),
             ("lid", "0 0 0.1", "0 0 -1", "pressure 0")))
-        self.liggghts(HEAD + f"fix flow all pfv viscosity 0.01 container {faces} history 1 h.csv\nrun 0\n")
+        self.liggghts(HEAD + f"fix flow all pfv viscosity 0.01 container {faces} history 1 h.csv output 1 f.pvd\nrun 0\n")
         row, = self.history()
+        walls = self.drawn("f_walls_0.vtu")
+        self.assertEqual([name for name, _ in walls], ["left", "right", "front", "back", "under,ground", "lid"])
+        for name, force in walls:
+            self.assertAlmostEqual(float(row[f"{name}_force_z"]), force, delta=1e-11 * max(abs(force), 1e-3))
         self.assertEqual((float(row["lid_position"]), float(row["under,ground_position"])), (0.1, 0.0))
         self.assertGreater(float(row["under,ground_flux"]), 0.0)
 
