@@ -66,10 +66,25 @@ Numbers<double> one_each(py::handle given, const char* name, py::ssize_t spheres
   return numbers;
 }
 
-Numbers<std::int64_t> ids_of(py::handle given, py::ssize_t spheres) {
-  auto ids = numbers_of<std::int64_t>(given, "ids", "iu", "whole numbers (int64)");
-  if (ids.ndim() != 1 || ids.shape(0) != spheres) refuse_shape("ids", ids, for_each_sphere(spheres));
-  return ids;
+namespace {
+
+Numbers<std::int64_t> whole_numbers_of(py::handle given, const char* name, py::ssize_t spheres) {
+  auto numbers = numbers_of<std::int64_t>(given, name, "iu", "whole numbers (int64)");
+  if (numbers.ndim() != 1 || numbers.shape(0) != spheres) refuse_shape(name, numbers, for_each_sphere(spheres));
+  return numbers;
+}
+
+}  // namespace
+
+Numbers<std::int64_t> ids_of(py::handle given, py::ssize_t spheres) { return whole_numbers_of(given, "ids", spheres); }
+
+Eigen::VectorXi bodies_of(py::handle given, py::ssize_t spheres) {
+  const auto numbers = whole_numbers_of(given, "bodies", spheres);
+  for (py::ssize_t k = 0; k < spheres; ++k)
+    if (numbers.at(k) < -1 || numbers.at(k) >= spheres)
+      throw InputError("bodies: the sphere in row " + std::to_string(k) + " has the body " +
+                       std::to_string(numbers.at(k)) + ": count bodies from 0 on, and give -1 for a sphere of none");
+  return vector_of(numbers).cast<int>();
 }
 
 double number_of(py::handle given, const char* name) {

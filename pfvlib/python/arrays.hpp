@@ -30,6 +30,8 @@ Numbers<double> rows_of_three(py::handle given, const char* name);
 Numbers<double> rows_of_three(py::handle given, const char* name, py::ssize_t spheres);
 Numbers<double> one_each(py::handle given, const char* name, py::ssize_t spheres);
 Numbers<std::int64_t> ids_of(py::handle given, py::ssize_t spheres);
+/// Numbers of the rigid bodies that hold the spheres, from 0 on, -1 for none.
+Eigen::VectorXi bodies_of(py::handle given, py::ssize_t spheres);
 /// One number.
 double number_of(py::handle given, const char* name);
 /// Three numbers.

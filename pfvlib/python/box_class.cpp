@@ -166,9 +166,12 @@ bounds: [[xlo, xhi], [ylo, yhi], [zlo, zhi]], m
 wall: "no_slip" or "symmetry", of all sealed faces
 periodic: axes along which the packing repeats, "xy" for instance; their faces do not exist
 gradient: macroscopic pressure gradient along periodic axes, Pa/m, 3 numbers; fluid flows against it
+tilt: how far the cell leans, m: xy, the way of its upper y side along x, then xz and yz (LIGGGHTS' triclinic box);
+    both axes of a component must be periodic. Spheres may stand anywhere on the lattice
 
 Faces are xlo, xhi, ylo, yhi, zlo, zhi; one that is not named is sealed and at rest. A Flow takes a copy: hand a
-changed box to `Flow.set_box`. Raises InputError for bounds that are flat, inverted or not finite.)";
+changed box to `Flow.set_box`. Raises InputError for bounds that are flat, inverted or not finite, and for a tilt along
+an axis that is not periodic.)";
 
 const char* const face_text =
     R"(Sets what is named of a face and returns the box.
@@ -196,6 +199,7 @@ std::string text_of(const Box& box) {
     text << (axis ? ", " : "") << '[' << box.lower[axis] << ", " << box.upper[axis] << ']';
   text << ']';
   if (box.any_periodic()) text << ", periodic='" << periodic_text(box) << '\'';
+  if (box.is_tilted()) text << ", tilt=(" << box.tilt[0] << ", " << box.tilt[1] << ", " << box.tilt[2] << ')';
   text << ')';
   return text.str();
 }
@@ -230,6 +234,9 @@ void add_measures(py::class_<Box>& box) {
   box.def_property("gradient", [](const Box& self) { return array_of(self.pressure_gradient); },
                    [](Box& self, py::object slope) { self.pressure_gradient = vector_of(slope, "gradient"); },
                    "Macroscopic pressure gradient along periodic axes, Pa/m.");
+  box.def_property("tilt", [](const Box& self) { return array_of(self.tilt); },
+                   [](Box& self, py::object components) { self.tilt = vector_of(components, "tilt"); },
+                   "How far the cell leans, m: xy, xz, yz; a copy; assign to change it.");
   box.def_property_readonly("periodic", &periodic_text, "Axes along which the packing repeats: \"xy\".");
   box.def_property_readonly("faces", &faces_of, "{name: {condition: value}} of all faces.");
   box.def_property_readonly("volume", &Box::volume, "m3");
@@ -243,7 +250,7 @@ void add_measures(py::class_<Box>& box) {
 
 }  // namespace
 
-Box make_box(py::handle bounds, const std::string& wall, py::handle periodic, py::handle gradient) {
+Box make_box(py::handle bounds, const std::string& wall, py::handle periodic) {
   Box box;
   const auto intervals = intervals_of(bounds, "box", 3);
   for (int axis = 0; axis < 3; ++axis) {
@@ -251,7 +258,6 @@ Box make_box(py::handle bounds, const std::string& wall, py::handle periodic, py
     box.upper[axis] = intervals[static_cast<std::size_t>(axis)][1];
   }
   box.periodic = periodic_of(periodic);
-  box.pressure_gradient = vector_of(gradient, "gradient");
   for (const std::string& name : face_names(box)) condition_of(box, name).wall = named<Wall>(wall);
   check(box);
   return box;
@@ -259,14 +265,22 @@ Box make_box(py::handle bounds, const std::string& wall, py::handle periodic, py
 
 Box box_of(py::handle given) {
   if (py::isinstance<Box>(given)) return given.cast<Box>();
-  return make_box(given, name_of(Wall::no_slip), py::str(""), py::make_tuple(0.0, 0.0, 0.0));
+  return make_box(given, name_of(Wall::no_slip), py::str(""));
 }
 
 void add_box_class(py::module_& module) {
   using namespace py::literals;
   py::class_<Box> box(module, "Box", box_text);
-  box.def(py::init(&make_box), "bounds"_a, py::kw_only(), "wall"_a = "no_slip", "periodic"_a = "",
-          "gradient"_a = py::make_tuple(0.0, 0.0, 0.0));
+  const auto made = [](py::object bounds, const std::string& wall, py::object periodic, py::object gradient,
+                       py::object tilt) {
+    Box given = make_box(bounds, wall, periodic);
+    given.pressure_gradient = vector_of(gradient, "gradient");
+    given.tilt = vector_of(tilt, "tilt");
+    check(given);
+    return given;
+  };
+  box.def(py::init(made), "bounds"_a, py::kw_only(), "wall"_a = "no_slip", "periodic"_a = "",
+          "gradient"_a = py::make_tuple(0.0, 0.0, 0.0), "tilt"_a = py::make_tuple(0.0, 0.0, 0.0));
   add_conditions(box);
   add_measures(box);
 }

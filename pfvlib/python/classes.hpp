@@ -15,11 +15,12 @@ void add_box_class(py::module_& module);
 void add_fluid_class(py::module_& module);
 void add_packing_class(py::module_& module);
 void add_network_class(py::module_& module);
+void add_rigid_body_class(py::module_& module);
 void add_flow_class(py::module_& module);
 void add_permeability(py::module_& module);
 
 /// [[xlo, xhi], [ylo, yhi], [zlo, zhi]], all faces sealed. Throws InputError.
-Box make_box(py::handle bounds, const std::string& wall, py::handle periodic, py::handle gradient);
+Box make_box(py::handle bounds, const std::string& wall, py::handle periodic);
 /// A Box, or the bounds of one whose faces are sealed and no-slip.
 Box box_of(py::handle given);
 

@@ -68,11 +68,11 @@ py::array advance(FlowHost& host, const GivenGrains& given, double dt, const std
   return lent(host, &Forces::total);
 }
 
-double limit_of(FlowHost& host, py::handle given, py::handle of_faces) {
+double limit_of(FlowHost& host, py::handle given, py::handle of_faces, const std::vector<RigidBody>& bodies) {
   const auto numbers = reals_of(given, "masses");
   const Eigen::VectorXd masses = vector_of(numbers);
   const Pistons pistons = pistons_of(host.box(), of_faces);
-  return host.ask([&](FlowModel& model) { return model.time_step_limit(masses, pistons); });
+  return host.ask([&](FlowModel& model) { return model.time_step_limit(masses, pistons, bodies); });
 }
 
 const char* const advance_text =
@@ -88,6 +88,8 @@ pistons: {face: mass} or {face: (mass, other_force)} of faces that move freely, 
 angular_velocities: N x 3, rad/s, read where Flow was given torques=True
 ids: N whole numbers, unique, which errors name (None: the numbers of the rows, from 0)
 displaced_volumes: N, m3, that the lift counts (None: whole spheres)
+bodies: N whole numbers, the rigid body that holds each sphere, from 0 on, -1 for none (None: there are no bodies):
+    pores within one are no fluid; rigid_bodies: a RigidBody for each number, which all but explicit steps need
 commit: False takes the same step without advancing anything
 
 An explicit step ends where the grains are at `positions` and is stable below `time_step_limit`; for staged and
@@ -104,36 +106,38 @@ dt: s; 0, unless the fluid is compressible)";
 const char* const limit_text =
     R"(Limit of the explicit coupling of the last packing, s; inf where nothing resists.
 
-masses: N, kg; pistons: as for `advance`. Cost: some 15 to 35 solves for a new network.)";
+masses: N, kg; pistons, rigid_bodies: as for `advance`. Cost: some 15 to 35 solves for a new network.)";
 
 void add_steps(py::class_<FlowHost>& flow) {
   flow.def("advance",
            [](FlowHost& host, py::object positions, py::object radii, py::object velocities, double dt,
               const std::optional<std::string>& coupling, py::object masses, py::object other_forces,
               py::object pistons, py::object angular_velocities, py::object other_torques, py::object inertias,
-              py::object ids, py::object displaced_volumes, bool commit) {
-             return advance(host, {positions, radii, velocities, angular_velocities, ids, displaced_volumes}, dt,
-                            coupling, {masses, other_forces, other_torques, inertias, pistons}, commit);
+              py::object ids, py::object displaced_volumes, py::object bodies,
+              const std::vector<RigidBody>& rigid_bodies, bool commit) {
+             return advance(host, {positions, radii, velocities, angular_velocities, ids, displaced_volumes, bodies},
+                            dt, coupling, {masses, other_forces, other_torques, inertias, pistons, rigid_bodies}, commit);
            },
            "positions"_a, "radii"_a, "velocities"_a = py::none(), "dt"_a, "coupling"_a = py::none(), py::kw_only(),
            "masses"_a = py::none(), "other_forces"_a = py::none(), "pistons"_a = py::none(),
            "angular_velocities"_a = py::none(), "other_torques"_a = py::none(), "inertias"_a = py::none(),
-           "ids"_a = py::none(), "displaced_volumes"_a = py::none(), "commit"_a = true,
+           "ids"_a = py::none(), "displaced_volumes"_a = py::none(), "bodies"_a = py::none(),
+           "rigid_bodies"_a = py::tuple(), "commit"_a = true,
            advance_text);
 }
 
 void add_evaluations(py::class_<FlowHost>& flow) {
   flow.def("evaluate",
            [](FlowHost& host, py::object positions, py::object radii, py::object velocities, double dt,
-              py::object angular_velocities, py::object ids, py::object displaced_volumes) {
-             return advance(host, {positions, radii, velocities, angular_velocities, ids, displaced_volumes}, dt,
-                            name_of(Coupling::explicit_step), {}, false);
+              py::object angular_velocities, py::object ids, py::object displaced_volumes, py::object bodies) {
+             return advance(host, {positions, radii, velocities, angular_velocities, ids, displaced_volumes, bodies},
+                            dt, name_of(Coupling::explicit_step), {}, false);
            },
            "positions"_a, "radii"_a, "velocities"_a = py::none(), "dt"_a = 0.0, py::kw_only(),
            "angular_velocities"_a = py::none(), "ids"_a = py::none(), "displaced_volumes"_a = py::none(),
-           evaluate_text);
+           "bodies"_a = py::none(), evaluate_text);
   flow.def("time_step_limit", &limit_of, "masses"_a, "pistons"_a = py::none(),
-           limit_text);
+           "rigid_bodies"_a = py::tuple(), limit_text);
   flow.def("rebuild", [](FlowHost& host) { host.run([](FlowModel& model) { model.rebuild(); }); },
            "Discards the network; the next step triangulates anew.");
   flow.def("set_box", [](FlowHost& host, py::object given) {

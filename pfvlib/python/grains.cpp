@@ -33,11 +33,17 @@ Grains::Grains(const GivenGrains& given)
     angular_velocities_ = rows_of_three(given.angular_velocities, "angular_velocities", count());
   if (!given.displaced_volumes.is_none())
     displaced_volumes_ = one_each(given.displaced_volumes, "displaced_volumes", count());
+  if (!given.bodies.is_none()) bodies_ = bodies_of(given.bodies, count());
 }
 
 Packing Grains::packing() const {
-  return {vector_of(ids_),         columns_of(positions_),          vector_of(radii_),
-          columns_of(velocities_), columns_of(angular_velocities_), vector_of(displaced_volumes_)};
+  return {vector_of(ids_),
+          columns_of(positions_),
+          vector_of(radii_),
+          columns_of(velocities_),
+          columns_of(angular_velocities_),
+          vector_of(displaced_volumes_),
+          {bodies_.data(), bodies_.size()}};
 }
 
 Dynamics::Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Box& box) {
@@ -54,6 +60,7 @@ Dynamics::Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Box& b
     look_at(dynamics_.other_torques, rows(given.other_torques, "other_torques", spheres));
   if (!given.inertias.is_none()) look_at(dynamics_.inertias, each(given.inertias, "inertias", spheres));
   dynamics_.pistons = pistons_of(box, given.pistons);
+  dynamics_.bodies = given.bodies;
 }
 
 Eigen::Map<const Eigen::Matrix3Xd> Dynamics::rows(py::handle given, const char* name, py::ssize_t spheres) {

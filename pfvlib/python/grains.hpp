@@ -12,7 +12,7 @@ namespace pfv::python {
 
 /// The arrays of one call, as Python gave them; None where there is none.
 struct GivenGrains {
-  py::object positions, radii, velocities, angular_velocities, ids, displaced_volumes;
+  py::object positions, radii, velocities, angular_velocities, ids, displaced_volumes, bodies;
 };
 
 /// Keeps the arrays that its packing looks at.
@@ -28,6 +28,7 @@ class Grains {
   Numbers<double> positions_, radii_;
   Numbers<double> velocities_ = none(), angular_velocities_ = none(), displaced_volumes_{0};
   Numbers<std::int64_t> ids_;
+  Eigen::VectorXi bodies_;
 
   static Numbers<double> none() { return Numbers<double>(std::vector<py::ssize_t>{0, 3}); }
 };
@@ -35,6 +36,7 @@ class Grains {
 struct GivenDynamics {
   py::object masses = py::none(), other_forces = py::none(), other_torques = py::none(), inertias = py::none(),
              pistons = py::none();
+  std::vector<RigidBody> bodies{};
 };
 
 /// What staged and implicit steps must know of the grains, with the arrays that it looks at.

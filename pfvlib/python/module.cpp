@@ -18,6 +18,7 @@ PYBIND11_MODULE(_pfv, module) {
   add_fluid_class(module);
   add_packing_class(module);
   add_network_class(module);
+  add_rigid_body_class(module);
   add_flow_class(module);
   add_permeability(module);
   module.def("settings", &table_of_settings,

@@ -16,7 +16,7 @@ using namespace py::literals;
 Box sample(py::handle bounds, const std::string& axis, const std::string& periodic) {
   if (axis != "x" && axis != "y" && axis != "z")
     throw InputError("there is no axis '" + axis + "': give x, y or z");
-  Box box = make_box(bounds, name_of(Wall::symmetry), py::str(periodic), py::make_tuple(0.0, 0.0, 0.0));
+  Box box = make_box(bounds, name_of(Wall::symmetry), py::str(periodic));
   const int along = axis[0] - 'x';
   if (box.periodic[static_cast<std::size_t>(along)]) {
     box.pressure_gradient[along] = -1.0 / (box.upper[along] - box.lower[along]);
@@ -44,7 +44,7 @@ void warn_of(const Report& report) {
 
 double permeability(py::object positions, py::object radii, py::object box, const std::string& axis,
                     const std::string& periodic, py::object ids, const py::kwargs& keywords) {
-  const Grains grains({positions, radii, py::none(), py::none(), ids, py::none()});
+  const Grains grains({positions, radii, py::none(), py::none(), ids, py::none(), py::none()});
   Settings settings;
   settings.options.forces = false;
   read_keywords("permeability()", keywords, all_keywords(), settings);

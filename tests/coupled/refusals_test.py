@@ -16,6 +16,15 @@ class Refusals(CoupledTest):
     def refuse(self, flow, *parts, before="", after="run 0\n"):
         self.refused(f"include in.packing\n{before}fix flow all pfv {flow}\n{after}", *parts)
 
+    def test_superquadrics(self):
+        """By name; a LIGGGHTS that is built without them says so before the fix can."""
+        script = ("units si\natom_style superquadric\natom_modify map array\nboundary f f f\nnewton off\n"
+                  "communicate single vel yes\nregion b block 0 0.1 0 0.1 0 0.1 units box\ncreate_box 1 b\n"
+                  f"fix flow all pfv {WATER}\n")
+        done = self.launch(script)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertRegex(done.stdout, "superquadric atoms have no pore network|Invalid atom style")
+
     # the command
 
     def test_unknown_keyword(self):

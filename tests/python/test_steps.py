@@ -141,5 +141,76 @@ class Steps(unittest.TestCase):
         self.assertEqual(len(flow.hidden), 0)
 
 
+class RigidBodies(unittest.TestCase):
+    """Pairs of spheres that overlap, of the grains of a bed with every other one beside its neighbour."""
+
+    def setUp(self):
+        bed = grains()
+        centres, radii = np.array(bed.positions)[:40], np.array(bed.radii)[:40]
+        away = np.array([[0, 0, 0.5]]) * radii[:, None]
+        self.positions = np.stack([centres - away / 2, centres + away / 2], axis=1).reshape(-1, 3)
+        self.radii = np.repeat(0.6 * radii, 2)
+        self.held = np.repeat(np.arange(40), 2)
+        self.velocities = 1e-3 * rotation(np.repeat(centres, 2, axis=0))
+        mass = 2600 * 4 / 3 * np.pi * (0.6 * radii)**3
+        self.masses = np.repeat(mass, 2)
+        self.rigid = [pfv.RigidBody([-one / 2, one / 2], masses=m, inertias=np.full(3, m * 0.1 * r**2))
+                      for one, m, r in zip(away, mass, radii)]
+
+    def flow(self, **settings):
+        return pfv.Flow(pfv.Box(UNIT).face("zhi", pressure=0.0), viscosity=100.0, **settings)
+
+    def test_their_spheres_move_together_in_long_steps(self):
+        """Far above the limit drag nearly stops a body, as it does a grain: m v / dt is what it takes."""
+        flow = self.flow()
+        flow.evaluate(self.positions, self.radii, bodies=self.held)
+        limit = flow.time_step_limit(self.masses, rigid_bodies=self.rigid)
+        self.assertLess(abs(limit / flow.time_step_limit(self.masses, None, self.rigid) - 1), 1e-12)
+        for coupling in ("staged", "implicit"):
+            dt = 100 * limit
+            forces = self.flow().advance(self.positions, self.radii, self.velocities, dt, coupling, masses=self.masses,
+                                         bodies=self.held, rigid_bodies=self.rigid)
+            on_bodies = np.add.reduceat(forces, range(0, 80, 2))
+            stop = -np.array([one.masses[0] for one in self.rigid])[:, None] * self.velocities[::2] / dt
+            self.assertLess(abs(on_bodies).max(), 3 * abs(stop).max())
+            self.assertGreater(abs(on_bodies).max(), 0.3 * abs(stop).max())
+
+    def test_pores_within_a_body_are_no_fluid(self):
+        """Four spheres that close a pore between them: as grains that approach they press its fluid."""
+        corners = 0.6 * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+        radii = np.repeat(0.35 * self.radii[::2], 4)
+        positions = (self.positions[::2, None, :] + corners * radii[::4, None, None]).reshape(-1, 3)
+        velocities = rotation(positions)
+        for bodies in (None, np.full(160, -1)):
+            with self.assertRaisesRegex(pfv.InputError, "cut off"):
+                self.flow().evaluate(positions, radii, velocities, bodies=bodies)
+        flow = self.flow()
+        flow.evaluate(positions, radii, velocities, bodies=np.repeat(np.arange(40), 4))
+        self.assertLess(abs(flow.report()["mass_error"]), 1e-9)
+
+    def test_a_body_that_is_held_takes_no_part(self):
+        flow = self.flow()
+        flow.evaluate(self.positions, self.radii, bodies=self.held)
+        fixed = [pfv.RigidBody(one.arms, masses=np.inf, inertias=np.full(3, np.inf)) for one in self.rigid]
+        self.assertEqual(flow.time_step_limit(self.masses, rigid_bodies=fixed), np.inf)
+
+    def test_what_does_not_fit_is_refused(self):
+        call = {"masses": self.masses, "bodies": self.held}
+        one = self.rigid[0]
+        wrong = [pfv.RigidBody(one.arms[:1], masses=one.masses, inertias=one.inertias),
+                 pfv.RigidBody(one.arms, masses=-1.0, inertias=one.inertias),
+                 pfv.RigidBody(one.arms, masses=1.0, inertias=one.inertias, axes=2 * np.eye(3))]
+        for bodies, part in [(self.rigid[:-1], "39 bodies"), *zip(([each, *self.rigid[1:]] for each in wrong),
+                                                                 ("1 arms for 2", "mass or inertia", "axes"))]:
+            with self.assertRaisesRegex(pfv.InputError, part):
+                self.flow().advance(self.positions, self.radii, self.velocities, DT, "staged", rigid_bodies=bodies,
+                                    **call)
+        for bodies in (np.full(80, 80), np.full(80, -2), self.held[:-1]):
+            with self.assertRaisesRegex(pfv.InputError, "bodies"):
+                self.flow().evaluate(self.positions, self.radii, bodies=bodies)
+        with self.assertRaisesRegex(TypeError, "bodies"):
+            self.flow().evaluate(self.positions, self.radii, bodies=np.full(80, 0.5))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -13,8 +13,8 @@ SI units throughout; arrays have a row for each sphere, pore or throat. An array
 read where it stands; others are copied. `pfv.settings()` lists the keywords of Flow.
 """
 from ._errors import AccuracyWarning, Error, FileError, InputError, SolverError
-from ._pfv import (Box, Flow, Fluid, Network, Packing, __version__, citation, dense_packing, permeability,
+from ._pfv import (Box, Flow, Fluid, Network, Packing, RigidBody, __version__, citation, dense_packing, permeability,
                    read_packing, settings)
 
 __all__ = ["AccuracyWarning", "Box", "Error", "FileError", "Flow", "Fluid", "InputError", "Network",
-           "Packing", "SolverError", "citation", "dense_packing", "permeability", "read_packing", "settings"]
+           "Packing", "RigidBody", "SolverError", "citation", "dense_packing", "permeability", "read_packing", "settings"]
