@@ -47,6 +47,7 @@ if [ "${1:-}" = long ]; then
   "$root/run.sh" stability write
   for scene in oedometer_large permeameter deposition darcy_outlet wave_still wave_dense \
       wave_loose wave_permeability wave_oscillating shear_viscous boiling triaxial_cylinder triaxial \
+      triaxial_periodic \
       hopper_underwater drum_underwater clumps settling column_collapse; do
     "$root/run.sh" "$scene"
   done
@@ -57,6 +58,7 @@ if [ "${1:-}" = long ]; then
   /usr/bin/python3 "$root/tests/hosts/test_hosts.py" -v
   PFV_COMMAND=$root/build/bin/pfv PYTHONPATH=$root/build/python /usr/bin/python3 "$root/tests/python/test_notebooks.py" --nbclient
   "$root/doc/accuracy.py"
+  "$root/doc/periodic.py"
   "$root/doc/error_vs_time.py" solvers thresholds coupling coupling_5000 sizes models scaling
   "$root/doc/scaling.py" million
   "$root/tests/bench/table.py"

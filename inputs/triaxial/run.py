@@ -16,7 +16,8 @@ import numpy as np
 import bed
 import meshes
 import scene
-from plotting import plt, save_figure
+from element_tests import BULK_MODULUS, FRICTION, NUDGES, RAMP, ROWS, compared, draw_drained, draw_undrained
+from element_tests import drained_measures, record, time_step
 
 KEYS = {
     "N": (int, 1000, "grains"),
@@ -29,15 +30,11 @@ KEYS = {
     "WORDS": (str, "", "more of fix pfv"),
     "OUT": scene.OUT,
 }
-RADIUS, SOLID_DENSITY, STIFFNESS, BULK_MODULUS = 0.03, 2600.0, 15e6, 2.2e9  # m, kg/m3, Pa, Pa
+RADIUS = 0.03  # m
 PISTON_MASS = 0.3  # kg for each grain: as much as the sample
-FRICTION = {"dense": 0.0175, "loose": 0.57735}  # between grains that are compressed: 1 and 30 degrees
-STEP = 0.25 * math.sqrt(SOLID_DENSITY * 4 / 3 * math.pi * (0.9 * RADIUS)**3 / (2 * STIFFNESS * 0.9 * RADIUS))  # s
+STEP = time_step(RADIUS)  # s
 SPEED = 0.2  # m/s, of the plates while they compress
-RAMP = 0.005  # axial strain at a test's rate, in whose time that rate is reached
-ROWS = 200  # of a record
 ENOUGH = 1000  # grains from which on a loose sample is even enough for both sides to have one stress
-NUDGES = [1e-12, 2e-12, 3e-12]  # m/s, at the upper plate
 # a drained test is far below its explicit limit; a compressible fluid is solved at each step
 COUPLE_EVERY = {"drained": 5, "undrained": 1, "dry": 1}
 GRAIN = 4 / 3 * math.pi * RADIUS**3 * bed.MEAN_CUBE  # m3, the mean
@@ -88,53 +85,8 @@ def test(settings, sample, fluid, rate, nudge=0.0):
          "ramp": ramp, "steps": every * ROWS, "every": every, "piston_mass": PISTON_MASS * settings["N"],
          "viscosity": settings["VISCOSITY"], "bulk_modulus": BULK_MODULUS, "nudge": nudge},
         out, scene.Progress(f"{fluid} {rate:g}/s", sample["last"], sample["last"] + every * ROWS, STEP))
-    rows = np.genfromtxt(SCENE / f"{out}.csv", delimiter=",", names=True)[1:]
-    side = 0.5 * (rows["sx"] + rows["sy"])
     print(f"  {fluid} at {rate:g}/s: {every * ROWS} steps, CPU {cpu:.0f} s", flush=True)
-    return {"rows": rows, "mean": (2 * side + rows["sz"]) / 3, "deviator": rows["sz"] - side, "cpu": cpu,
-            "volumetric": 1 - rows["volume"] / sample["volume"], "strain": rows["strain"]}
-
-
-def path_distance(one, other):
-    """Distance of the points of one effective stress path, p' and q, from the line of another, over p': largest, rms."""
-    points, line = (np.column_stack([run["mean"], run["deviator"]]) for run in (one, other))
-    begin, along = line[:-1], np.diff(line, axis=0)
-    part = ((points[:, None] - begin) * along).sum(axis=2) / (along**2).sum(axis=1)
-    nearest = begin + np.clip(part, 0, 1)[..., None] * along
-    far = np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1) / points[:, 0]
-    return float(far.max()), float(np.sqrt((far**2).mean()))
-
-
-def difference(one, other):
-    """Rms over the strain of the difference of p', over p'."""
-    count = min(len(one["strain"]), len(other["strain"]))
-    return float(np.sqrt((((one["mean"][:count] / other["mean"][:count]) - 1)**2).mean()))
-
-
-def compared(pairs):
-    """The largest of what pairs of runs differ by."""
-    paths = np.array([path_distance(*pair) for pair in pairs]).max(axis=0)
-    return {"largest": float(paths[0]), "rms": float(paths[1]), "at_equal_strain": max(difference(*pair) for pair in pairs)}
-
-
-def friction_angle(run, where):
-    """Mobilised, degrees, from the mean stresses of some rows."""
-    q, p = run["deviator"][where].mean(), run["mean"][where].mean()
-    side = p - q / 3
-    return math.degrees(math.asin(q / (2 * side + q)))
-
-
-def drained_measures(run, volume):
-    """What the drained test says; the last tenth of the rows is its end."""
-    rows, end = run["rows"], np.arange(len(run["rows"])) >= 0.9 * len(run["rows"])
-    smooth = np.convolve(run["deviator"], np.full(9, 1 / 9), mode="valid")
-    left = np.concatenate(([0.0], np.cumsum(rows["left"][1:] * np.diff(rows["time"]))))
-    lost = rows["volume"][0] - rows["volume"]
-    return {"peak": float(smooth.max()), "end": float(run["deviator"][end].mean()),
-            "peak_angle": friction_angle(run, slice(max(0, int(smooth.argmax())), int(smooth.argmax()) + 9)),
-            "end_angle": friction_angle(run, end), "contraction": float(run["volumetric"].max()),
-            "volume_at_end": float(run["volumetric"][end].mean()),
-            "left": float(abs(left - lost).max() / volume), "excess": float(abs(rows["p"]).max())}
+    return {**record(SCENE / f"{out}.csv", sample["volume"]), "cpu": cpu}
 
 
 def tests_of(settings, kind, rates):
@@ -149,39 +101,6 @@ def tests_of(settings, kind, rates):
     return {"sample": sample, "runs": runs, "drained": drained_measures(runs["drained", rates[0]], sample["volume"]),
             "scatter": compared(pairs), "cpu": sample["cpu"] + sum(run["cpu"] for run in [*runs.values(), *alike[1:]]),
             "paths": {rate: compared([(runs["undrained", rate], runs["dry", rate])]) for rate in rates}}
-
-
-def draw_drained(found, rate, base):
-    figure, axes = plt.subplots(1, 2, figsize=(10, 3.8))
-    for kind, one in found.items():
-        run = one["runs"]["drained", rate]
-        label = f"{kind}, n = {one['sample']['porosity']:.3f}"
-        axes[0].plot(100 * run["strain"], run["rows"]["sz"] / 1e3, label=label)
-        axes[1].plot(100 * run["strain"], 100 * run["volumetric"], label=label)
-    axes[0].set(xlabel="axial strain, %", ylabel="effective axial stress, kPa")
-    axes[1].set(xlabel="axial strain, %", ylabel="volumetric strain (compression +), %")
-    axes[0].legend()
-    save_figure(figure, f"{base}_drained.png")
-
-
-def draw_undrained(found, rates, base):
-    figure, axes = plt.subplots(1, 3, figsize=(14, 4))
-    for kind, color in (("dense", "C0"), ("loose", "C1")):
-        for rate, style in zip(rates, ("-", "--", ":", "-.") * len(rates)):
-            wet, dry = (found[kind]["runs"][fluid, rate] for fluid in ("undrained", "dry"))
-            axes[0].plot(100 * wet["strain"], wet["rows"]["p"] / 1e3, style, color=color, label=f"{kind}, {rate:g}/s")
-            axes[1].plot(100 * wet["strain"], wet["deviator"] / 1e3, style, color=color)
-            axes[2].plot(wet["mean"] / 1e3, wet["deviator"] / 1e3, style, color=color)
-            if rate == rates[0]:
-                axes[1].plot(100 * dry["strain"], dry["deviator"] / 1e3, "k-", lw=0.7)
-                axes[2].plot(dry["mean"] / 1e3, dry["deviator"] / 1e3, "k-", lw=0.7)
-    axes[1].plot([], [], "k-", lw=0.7, label=f"dry, constant volume, {rates[0]:g}/s")
-    axes[0].set(xlabel="axial strain, %", ylabel="pore pressure, kPa")
-    axes[1].set(xlabel="axial strain, %", ylabel="deviator q, kPa")
-    axes[2].set(xlabel="mean effective stress p', kPa", ylabel="q, kPa")
-    axes[0].legend(fontsize="small")
-    axes[1].legend(fontsize="small")
-    save_figure(figure, f"{base}_undrained.png")
 
 
 def checks(settings, found, rates):

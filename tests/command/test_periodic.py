@@ -50,13 +50,26 @@ class Periodic(CommandTest):
         jittered = self.report(*ALL, packing=self.packing(moved, radius / 2))
         self.assertAlmostEqual(jittered["permeability"] / exact["permeability"], 1, delta=1e-6)
 
+    # 20 spheres in no order: a quasi-random sequence
+    DISORDER = [((.5 + .8191725 * i) % 1, (.5 + .6710436 * i) % 1, (.5 + .5497005 * i) % 1) for i in range(20)]
+
+    def test_one_more_cell_in_a_permeameter_adds_the_resistance_of_the_cell(self):
+        """Cells on end between two pressures: L / K is that of the two ends and of the cells."""
+        cell = self.report(*ALL, packing=self.packing(self.DISORDER, .15))["permeability_tensor"][2][2]
+        resistance = {}
+        for many in (3, 5):
+            centres = [(x, y, z + k) for k in range(many) for x, y, z in self.DISORDER]
+            stack = self.report("--periodic", "x,y", "--face", "zlo:pressure=1", "--face", "zhi:pressure=0",
+                                "--viscosity", "1", packing=self.packing(centres, .15),
+                                box=["--box", 0, 1, 0, 1, 0, many])
+            resistance[many] = many / stack["permeability"]
+        self.assertAlmostEqual((resistance[5] - resistance[3]) * cell / 2, 1.0, delta=1e-5)
+        self.assertGreater(abs(resistance[3] * cell / 3 - 1.0), 1e-3)
+
     def test_translation_changes_nothing(self):
-        # 20 spheres in no order: a quasi-random sequence
-        centres = [((.5 + .8191725 * i) % 1, (.5 + .6710436 * i) % 1, (.5 + .5497005 * i) % 1)
-                   for i in range(20)]
         reports = []
         for shift in ((0, 0, 0), (.37, -1.21, 3.08)):
-            moved = [tuple(c + s for c, s in zip(centre, shift)) for centre in centres]
+            moved = [tuple(c + s for c, s in zip(centre, shift)) for centre in self.DISORDER]
             reports.append(self.report(*ALL, packing=self.packing(moved, .15)))
         first, second = (report["permeability_tensor"] for report in reports)
         for i in range(3):
