@@ -48,7 +48,7 @@ if [ "${1:-}" = long ]; then
   for scene in oedometer_large permeameter deposition darcy_outlet wave_still wave_dense \
       wave_loose wave_permeability wave_oscillating shear_viscous boiling triaxial_cylinder triaxial \
       triaxial_periodic \
-      hopper_underwater drum_underwater clumps settling column_collapse; do
+      hopper_underwater drum_underwater plate_uplift clumps settling column_collapse; do
     "$root/run.sh" "$scene"
   done
   "$root/run.sh" wave_dense SHAKE=0.5 RATE=100 AMPLITUDE=600

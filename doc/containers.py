@@ -3,7 +3,7 @@
 """The tables of doc/container.md:  doc/containers.py [BUILD]
 
 Permeability and forces beside finite elements, one sphere in a tube, and dense beds in cylinders beside correlations that
-know of the wall. Ends with status 1 where a bound does not hold. A minute or two of CPU, most of it LIGGGHTS'.
+know of the wall. Ends with status 1 where a bound does not hold. Half a minute of CPU, most of it LIGGGHTS'.
 """
 import csv
 import json
