@@ -62,7 +62,8 @@ def collection(path):
     path, steps = Path(path), {}
     for entry in ElementTree.parse(path).getroot().iter("DataSet"):
         files = steps.setdefault(float(entry.get("timestep")), [None, None])
-        files[int(entry.get("part"))] = path.parent / entry.get("file")
+        if int(entry.get("part")) < 2:  # the walls come behind
+            files[int(entry.get("part"))] = path.parent / entry.get("file")
     return [(time, *files) for time, files in sorted(steps.items())]
 
 

@@ -17,6 +17,7 @@ def liggghts_words(script, variables=None, log=None, ranks=1, program=BIN / "lig
         words += ["-var", name, text_of(value)]
     if ranks > 1:
         words = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1",
+                 "--mca", "orte_create_session_dirs", "1",  # single runs of tests have none
                  "-np", str(ranks)] + words
     return words
 

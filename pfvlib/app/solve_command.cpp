@@ -157,19 +157,21 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Dea
   if (request.forces)
     write_forces(*request.forces, first_spheres(packing.rows(), grains),
                  first_forces(packing.forces_of_rows(flow.forces()), grains), ranks);
-  const auto walls = request.vtk ? walls_beside(*request.vtk) : std::nullopt;
-  const auto write = [&] {
-    if (!speaks(ranks)) return;
-    if (request.report) write_report(*request.report, report);
-    if (!walls) return;
-    const FieldGrid drawn = grid_of_walls(flow.container(), report.faces);
-    if (!drawn.types.empty()) write_fields(*walls, drawn);
+  const auto by_one = [&](const auto& write) {
+    const auto alone = [&] {
+      if (speaks(ranks)) write();
+    };
+    if (ranks) ranks->together(alone);
+    else alone();
   };
-  if (ranks) ranks->together(write);
-  else write();
+  if (request.report) by_one([&] { write_report(*request.report, report); });
   if (!request.vtk) return;
   if (ranks) write_fields(*request.vtk, flow.fields(), *ranks);
   else write_fields(*request.vtk, flow.fields());
+  if (const auto walls = walls_beside(*request.vtk)) by_one([&] {
+    const FieldGrid drawn = grid_of_walls(flow.container(), report.faces);
+    if (!drawn.types.empty()) write_fields(*walls, drawn);
+  });
 }
 
 /// The tensor stands in the report; without a gradient its error is worth a line all the same.

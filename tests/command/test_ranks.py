@@ -11,7 +11,7 @@ from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructure
 from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest
 
 MPIRUN = [os.environ.get("PFV_MPIRUN", "mpirun"), "--allow-run-as-root", "--oversubscribe", "--mca",
-          "mpi_yield_when_idle", "1"]
+          "mpi_yield_when_idle", "1", "--mca", "orte_create_session_dirs", "1"]
 
 
 class Ranks(CommandTest):
