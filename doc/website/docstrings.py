@@ -9,19 +9,25 @@ import re
 def stub_signatures():
     """{name: (arguments, result)} of the functions and methods of __init__.pyi."""
     stub = pathlib.Path(importlib.util.find_spec("pfv").origin).with_suffix(".pyi")
-    found = {}
+    found, aliases = {}, {}
+
+    def text_of(node):
+        """With what the stub's own names of types stand for."""
+        return re.sub(r"\b_[A-Z]\w+", lambda name: aliases.get(name[0], name[0]), ast.unparse(node))
 
     def add(prefix, body):
         for node in body:
-            if isinstance(node, ast.ClassDef):
+            if isinstance(node, ast.Assign):
+                aliases[node.targets[0].id] = text_of(node.value).replace("numpy.", "")
+            elif isinstance(node, ast.ClassDef):
                 add(prefix + node.name + ".", node.body)
             elif isinstance(node, ast.FunctionDef):
                 arguments = node.args
                 if "." in prefix:
                     arguments.args = arguments.args[1:]  # self
-                result = ast.unparse(node.returns) if node.returns else None
+                result = text_of(node.returns) if node.returns else None
                 name = prefix[:-1] if node.name == "__init__" else prefix + node.name
-                found[name] = (f"({ast.unparse(arguments)})", None if name == prefix[:-1] else result)
+                found[name] = (f"({text_of(arguments)})", None if name == prefix[:-1] else result)
     add("", ast.parse(stub.read_text()).body)
     return found
 
@@ -33,7 +39,9 @@ def take_signature(app, what, name, obj, options, signature, result):
 
 
 def escaped(text):
-    return re.sub(r"([\\*_|`])", r"\\\1", text)
+    """As it stands, but for `code`."""
+    parts = re.split(r"`([^`]+)`", text)
+    return "".join(f"``{part}``" if k % 2 else re.sub(r"([\\*_|`])", r"\\\1", part) for k, part in enumerate(parts))
 
 
 def keep_lines(app, what, name, obj, options, lines):
