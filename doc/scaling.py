@@ -172,7 +172,7 @@ def coupled(packings, sizes):
         walls = " ".join(f"face {axis}{side} plane {count if side == 'hi' else 0} symmetry"
                          for axis, count in zip("xyz", counts) for side in ("lo", "hi")) + " pressure 0"
         own = {steps: run_liggghts(folder, f"{SCRIPT}run {steps}\n", 1)[1] for steps in (0, STEPS)}
-        for ranks in (1, 2, 4):
+        for ranks in (1, 2, 4) if grains < 1000000 else (1, 2):
             text, seconds, memory = run_liggghts(
                 folder, f"{SCRIPT}fix flow all pfv viscosity 1e-3 density 1000 solver amg couple_every 1 {walls}\n"
                         f"run {STEPS}\n", ranks)

@@ -34,9 +34,9 @@ struct CellSum {
   Matrix3d gradient = Matrix3d::Zero();
 };
 
-class Cells {
+class DisplacedCells {
  public:
-  Cells(const BuiltNetwork& built, const Container& cell, const Displaced& moved)
+  DisplacedCells(const BuiltNetwork& built, const Container& cell, const Displaced& moved)
       : built_(built),
         now_(at_spheres(built, moved.now)),
         before_(at_spheres(built, moved.before)),
@@ -93,7 +93,7 @@ Eigen::Matrix<double, 6, 1> strain_of(const CellSum& around) {
   return rows;
 }
 
-void check(const Displaced& moved, const Container& cell, Eigen::Index packed) {
+void require_places(const Displaced& moved, const Container& cell, Eigen::Index packed) {
   for (const Eigen::Matrix3Xd* places : {&moved.now, &moved.before})
     if (places->cols() != packed)
       throw InputError("sphere_strains: " + std::to_string(places->cols()) + " places of " + std::to_string(packed) +
@@ -109,8 +109,8 @@ void check(const Displaced& moved, const Container& cell, Eigen::Index packed) {
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_strains(const BuiltNetwork& built, const Container& cell,
                                                         const Displaced& moved, Eigen::Index packed) {
-  check(moved, cell, packed);
-  const Cells cells(built, cell, moved);
+  require_places(moved, cell, packed);
+  const DisplacedCells cells(built, cell, moved);
   std::vector<CellSum> around(built.grains.spheres.size());
   for (int c = 0; c < built.network.cells(); ++c) {
     const CellSum sum = cells.sum_of(c);
