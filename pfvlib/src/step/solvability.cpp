@@ -103,7 +103,8 @@ void refuse_open_pores(const BuiltNetwork& built) {
     const std::vector<int> spheres = spheres_around(built, {pore});
     throw InputError("the spheres are too few, or too unlike, for a cylinder: pores reach around its axis (near " +
                          place_of(built, pore) + ", between " + sphere_list(built.grains.spheres.ids, spheres) +
-                         "); take planes around it in the place of the cylinder (for a mesh of the fix: `container flats`), or more spheres",
+                         "); take planes around it in the place of the cylinder (container file: \"flats\": 32; for a mesh "
+                         "of the fix: `container flats`), or more spheres",
                      culprits_of(built, spheres, {pore}));
   });
 }
