@@ -423,12 +423,35 @@ void warn_of_periodic_dump(const SolveRequest& request, const std::optional<Pack
   remarks << ", and walls stand there now: --periodic dump takes its cell\n";
 }
 
+/// Another cell than the dump's makes other pores at its sides. Dumps have six digits.
+void refuse_another_cell(const SolveRequest& request, const std::optional<PackingBounds>& bounds) {
+  const Container& given = request.container;
+  if (!bounds || !given.is_box) return;
+  const auto compare = [&](int axis, int other, const char* what, double of_dump, double of_box) {
+    for (const int one : {axis, other})
+      if (!given.periodic[one] || !bounds->periodic[one]) return;
+    const double size = std::max({std::abs(bounds->lower[axis]), std::abs(bounds->upper[axis]), std::abs(of_dump)});
+    if (std::abs(of_dump - of_box) <= 1e-5 * size) return;
+    std::ostringstream text;
+    text << request.packing << ": " << what << " of its periodic cell is " << of_dump << " m, that of the box "
+         << of_box << " m: give --periodic dump, which takes the cell from the dump";
+    throw InputError(text.str());
+  };
+  constexpr const char* lengths[]{"the length along x", "the length along y", "the length along z"};
+  const Eigen::Vector3d of_dump = bounds->upper - bounds->lower, of_box = given.upper - given.lower;
+  for (int axis = 0; axis < 3; ++axis) compare(axis, axis, lengths[axis], of_dump[axis], of_box[axis]);
+  compare(0, 1, "the tilt xy", bounds->tilt[0], given.tilt[0]);
+  compare(0, 2, "the tilt xz", bounds->tilt[1], given.tilt[1]);
+  compare(1, 2, "the tilt yz", bounds->tilt[2], given.tilt[2]);
+}
+
 }  // namespace
 
 PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks) {
   PackingFile file = request.file ? *request.file : read_packing_file(request.packing, request.choice);
   for (const std::string& remark : file.remarks) remarks << "pfv: " << request.packing << ": " << remark << '\n';
   warn_of_periodic_dump(request, file.bounds, remarks);
+  refuse_another_cell(request, file.bounds);
   if (request.box_of_file && request.container.is_box) {
     remarks << "pfv: " << request.packing << ": the flow box was taken from it:" << std::setprecision(12);
     for (int axis = 0; axis < 3; ++axis)

@@ -260,6 +260,12 @@ read("periodic, its own cell", dump(sides="pp pp pp"), flow=CELL, plain=["--peri
      said=("the flow box was taken from it: 0 1 0 1 0 1, periodic",))
 read("unwrapped, its own cell", dump("id type xu yu zu radius", FAR, "pp pp pp"), "--periodic", "dump", flow=CELL,
      plain=["--periodic", "x,y,z", *UNIT_BOX, *CELL], tolerance=1e-9)
+read("periodic, with another period", dump(sides="pp pp pp"),
+     flow=["--periodic", "x,y,z", *UNIT_BOX[:-1], "1.1", *CELL],
+     refused=("the length along z of its periodic cell is 1 m", "1.1 m", "--periodic dump"))
+read("periodic and tilted, with no tilt", dump(sides="xy xz yz pp pp pp", bounds="0 1.25 0.25\n0 1 0\n0 1 0\n"),
+     flow=["--periodic", "x,y,z", *UNIT_BOX, *CELL],
+     refused=("the tilt xy of its periodic cell is 0.25 m", "--periodic dump"))
 read("a box around the spheres", dump(), "--box", "auto", flow=THROUGH_FLOW, plain=["--box", "auto", *THROUGH_FLOW],
      said=("the flow box was taken from it",))
 read("two snapshots, the last", MOVED + dump(step=1000))
@@ -367,4 +373,5 @@ refused(".vtu with too few radii", vtu({"radius": RADII[:99]}), "99 values for 1
 refused(".vtu in two pieces", vtu({"radius": RADII}, pieces=2), "several pieces")
 refused(".vti, an image", vtu({"radius": RADII}, "ImageData"), "ImageData", ".vtu or .vtp")
 refused(".vtu, cut off", vtu({"radius": RADII})[:-3000], "no whole XML file")
+refused("legacy VTK, cut off within the last number", legacy(RADII)[:-3], "last number may be cut off")
 refused("legacy VTK, cut off", legacy(RADII)[:-2500], "cut off")

@@ -380,6 +380,8 @@ PackingFile read_legacy_vtk(const std::string& path, std::string_view text) {
       read_point_data(words, points);
     }
   }
+  if (points.count > 0 && std::string_view(" \t\r\n").find(text.back()) == std::string_view::npos)
+    throw InputError(path + ": ends without a line end: its last number may be cut off; write it anew");
   return spheres_of(path, points);
 }
 
