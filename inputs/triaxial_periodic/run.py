@@ -34,8 +34,8 @@ PART = 0.1  # of the gain at which the sides would swing
 # what drains through one pore has to be thin: the pressure there and on the other side of the cell are those of a well
 DRAINED_VISCOSITY = 1e-3  # Pa s
 DILATES = 0.06  # axial strain by which a dense sample has more volume, or less pore pressure, than at the beginning
-# m/s, at the upper end, of dry runs that are scattered: as those of renumbered grains are, up to a fortieth of the speed
-# of the test. A loose sample collapses in steps, otherwise in each of them
+# m/s, at the upper end, of dry runs that are scattered: as those of renumbered grains are, up to a fortieth of the
+# speed of the test. A loose sample collapses in steps, otherwise in each of them
 NUDGES = [1e-12, 1e-9, 1e-6, 1e-4, 1e-3]
 GRAIN = 4 / 3 * math.pi * RADIUS**3 * bed.MEAN_CUBE  # m3, the mean
 SCRIPTS = {"drained": "drained", "undrained": "undrained", "saturated": "undrained", "dry": "dry"}
@@ -113,7 +113,8 @@ def checks_of(settings, kind, one):
     # (the mass error is a part of what moves: nothing does at constant volume)
     runs = [one["runs"][fluid, rate]["rows"] for fluid in ("drained", "undrained")]
     return rows + [within(f"{kind}: {name.replace('_', ' ')}, largest",
-                          max(float(abs(run[name]).max()) for run in runs), 1e-9) for name in ("mass_error", "force_error")]
+                          max(float(abs(run[name]).max()) for run in runs), 1e-9)
+                   for name in ("mass_error", "force_error")]
 
 
 def checks(settings, found):
@@ -137,8 +138,9 @@ def say(kind, one, rate):
     m, p = one["drained"], one["runs"]["undrained", rate]["rows"]["p"] / 1e3
     print(f"{kind}: drained, deviator {m['peak'] / 1e3:.1f} kPa at its peak ({m['peak_angle']:.1f} degrees), "
           f"{m['end'] / 1e3:.1f} at the end ({m['end_angle']:.1f}); volumetric strain "
-          f"{100 * m['contraction']:.2f} % at most, {100 * m['volume_at_end']:.2f} % at the end\n  undrained: pore pressure between {p.min():.1f} and "
-          f"{p.max():.1f} kPa, {p[-10:].mean():.1f} at the end; CPU {one['cpu']:.0f} s")
+          f"{100 * m['contraction']:.2f} % at most, {100 * m['volume_at_end']:.2f} % at the end\n  undrained: "
+          f"pore pressure between {p.min():.1f} and {p.max():.1f} kPa, {p[-10:].mean():.1f} at the end; "
+          f"CPU {one['cpu']:.0f} s")
     say_apart("a dry run", one["scatter"])
     say_apart("undrained", one["undrained"])
     say_apart("saturated at constant volume", one["saturated"])
