@@ -17,7 +17,10 @@ build_project
 echo "unit tests under the address and undefined-behaviour sanitizers"
 pointers=OFF  # checks of each access by a pointer, beside those of its address
 [ "${1:-}" = long ] && pointers=ON
-cmake -S "$root" --preset sanitize -DPFV_SANITIZE_POINTERS=$pointers > /dev/null
+cases=$root/build/tests/libunit_tests_cases.a  # compiled once: what is sanitized is the library
+[ "${1:-}" = long ] && cases=
+cmake -S "$root" --preset sanitize -DPFV_SANITIZE_POINTERS=$pointers "-DPFV_unit_tests_CASES=$cases" \
+  "-DPFV_WITH_MUMPS=$(sed -n 's/^PFV_WITH_MUMPS:BOOL=//p' "$root/build/CMakeCache.txt")" > /dev/null
 cmake --build "$root/build-sanitize" --target unit_tests
 # leaks: in the long test, without the slowness of both
 ASAN_OPTIONS=detect_leaks=0 in_two_halves "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
