@@ -15,7 +15,7 @@ if [ ! -f "$root/inputs/$scene/in.$scene" ]; then
 fi
 
 install_packages
-build_project pfv_command liggghts-pfv
+build_project to_install
 
 cd "$root/inputs/$scene"
 if [ -f run.py ]; then
