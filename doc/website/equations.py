@@ -24,6 +24,7 @@ INDEXED = rf"(?:Δ?[A-Za-zΑ-Ωα-ω])(?:_[a-z]{{1,3}}{RAISING}?|{RAISING})(?!\w
 SYMBOL = rf"(?:{INDEXED}|Δ?[B-HJ-Zb-zΑ-Ωα-ω](?![\w_^'’]))"
 BETWEEN = r"(?: [=+×-] |[ /.])"
 INLINE = re.compile(rf"(?<![\w^./_`\[-])(?:{SYMBOL}{BETWEEN})*{INDEXED}(?:{BETWEEN}{SYMBOL})*(?![\w`^_/(])")
+KEPT = re.compile(rf"{CODE.pattern}|\]\([^)]*\)|https?://\S+", CODE.flags)  # code, and where links lead
 BLOCK = re.compile(r"(?<=\n\n)((?: {4}.*\n)+(?:\n(?: {4}.*\n)+)*)(?=\n|\Z)")
 
 
@@ -107,7 +108,7 @@ def typeset(text):
 
     text = BLOCK.sub(block_of, text)
     parts, at = [], 0
-    for code in CODE.finditer(text):
-        parts += [symbols(text[at:code.start()]), code[0]]
-        at = code.end()
+    for kept in KEPT.finditer(text):
+        parts += [symbols(text[at:kept.start()]), kept[0]]
+        at = kept.end()
     return "".join(parts) + symbols(text[at:])
