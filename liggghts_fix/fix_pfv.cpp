@@ -300,8 +300,11 @@ void FixPfv::setup(int) {
   begin_anew_where_moved();
   container_ = current_container();
   // fix deform changes the cell after the last flow step of a run: that is part of the next run's first interval
-  const bool goes_on = since_.steps > 0 || (cell_.any() && !since_.face_positions.empty());
+  // (an older restart file cannot tell whether a box that nothing changes has been changed by hand: it begins anew)
+  const bool by_hand = since_.from_older_file && !cell_.changes() && since_.steps == 0;
+  const bool goes_on = !by_hand && (since_.steps > 0 || (cell_.any() && !since_.face_positions.empty()));
   since_.in_restart_file.reset();
+  since_.from_older_file = false;
   if (!goes_on) since_.face_positions = faces_.positions();
   if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
   const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, groupbit, settings_);
@@ -458,8 +461,8 @@ void FixPfv::restart(char* bytes) {
     since_.in_restart_file = record.left;
     since_.steps = record.steps_since_flow;
     since_.time = record.elapsed;
-    // a file without a fingerprint cannot tell of a box that has been changed since: its sides begin anew
-    if (record.left || since_.steps > 0) since_.face_positions = record.last_positions;
+    since_.from_older_file = !record.left;
+    since_.face_positions = record.last_positions;
     since_.cell_rates = record.cell_rates;
     schedule_.go_on_after(record.taken);
     obstacles_.restore(record.obstacles);

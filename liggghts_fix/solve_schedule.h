@@ -28,6 +28,7 @@ struct PfvSinceSolve {
   PfvCellRates cell_rates{};            // of a periodic cell, over the interval that ended with it
   PfvSnapshot grains;                   // where the flow is
   std::optional<std::uint64_t> in_restart_file;  // fingerprint of what it was written with; none after a run
+  bool from_older_file = false;         // without a fingerprint, and no run since
 };
 
 /// The steps from one solve to the next: always the same, or the flow's own choice within an error.

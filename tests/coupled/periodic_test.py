@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`boundary p` on some or all axes: the library's periodic cell under LIGGGHTS, also one that changes its lengths."""
 import math
+import struct
 import unittest
 
 from coupled import EDGE, HERE, CoupledTest, dump, forces, largest_difference, packing
@@ -154,14 +155,18 @@ class CrossingGrains(PeriodicTest):
 
 
 class Restart(PeriodicTest):
-    def compare(self, flow, boundary="p p p", deform="", drift=40.0, ranks=1, by_hand="", anew="", head=None):
-        """`by_hand`: what changes between the two runs; `anew`: what the run from the file does before that."""
+    def compare(self, flow, boundary="p p p", deform="", drift=40.0, ranks=1, by_hand="", anew="", head=None,
+                older=False):
+        """`by_hand`: what changes between the two runs; `anew`: what the run from the file does before that; `older`: the
+        file is one of form 8."""
         head = head or self.head(boundary)
         self.write(boundary, {n: [drift * c for c in v] for n, v in random_velocities(packing()).items()})
         fix = f"{deform}fix flow all pfv {flow}\n"
         self.liggghts(head + fix + "run 10\nwrite_restart file.restart\n" + by_hand + THERMO +
                       dump("continued.dump") + "run 10\n", ranks=ranks)
         continued = read_thermo((self.folder / "log.liggghts").read_text())
+        if older:
+            self.make_older(self.folder / "file.restart")
         skipped = ("units", "boundary", "read_data", "atom_style")
         head = "".join(line + "\n" for line in head.splitlines() if not line.startswith(skipped))
         head = head.replace("newton          off", "newton off\nread_restart file.restart")
@@ -169,6 +174,17 @@ class Restart(PeriodicTest):
         restarted = read_thermo((self.folder / "log.liggghts").read_text())
         self.assertEqual([row for row in restarted if "flow[7]" in row], [row for row in continued if "flow[7]" in row])
         self.assertEqual((self.folder / "continued.dump").read_bytes(), (self.folder / "restarted.dump").read_bytes())
+
+    def make_older(self, file):
+        """The record of step 10 in form 8, which is read as far as that goes."""
+        forms = [struct.pack("2d", form, 10.0) for form in (9.0, 8.0)]
+        self.assertIn(forms[0], file.read_bytes())
+        file.write_bytes(file.read_bytes().replace(*forms, 1))
+
+    def test_files_without_a_fingerprint_are_read(self):
+        self.compare(f"{DRIVEN} bulk_modulus 1e4", older=True)
+        self.compare("viscosity 0.01 bulk_modulus 1e4 couple_every 2", deform="fix shrink all deform 1 x vel -2\n",
+                     drift=1.0, older=True)
 
     def test_a_continued_run_writes_the_same_bytes(self):
         self.compare(f"{DRIVEN} bulk_modulus 1e4")
