@@ -63,6 +63,7 @@ class Plot(CommandCase):
 
     def test_history_has_a_panel_for_each_kind_of_quantity_that_the_run_has(self):
         figure = self.assert_readable(pfv.plot.figure(self.write("h.csv", history())))
+        self.assertEqual(figure._repr_png_()[:4], b"\x89PNG")  # that a notebook shows
         labels = [axes.get_ylabel() for axes in figure.axes]
         self.assertEqual(labels, ["pressure, Pa", "flux into the box, m³/s", "force of the fluid, N", "displacement, m",
                                   "pore strain", "porosity", "balance errors", "count"])

@@ -46,6 +46,7 @@ class Render(CommandCase):
     def test_grains_have_the_colour_of_their_force(self):
         """viridis: the unloaded one is violet, the other yellow."""
         figure = pfv.render.figure(self.folder / "g.vtu")
+        self.assertEqual(figure._repr_png_()[:4], b"\x89PNG")  # that a notebook shows
         red, green, blue = colours(figure).astype(int).T
         violet, yellow = (blue > green + 20).sum(), (red > blue + 60).sum()
         self.assertGreater(violet, 5000)

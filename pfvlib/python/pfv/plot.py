@@ -10,6 +10,7 @@ What a file holds is told from its header. Each becomes a picture beside it (-o 
 `pfv.plot.figure(path)` returns matplotlib's figure. Nothing is computed here but what is drawn.
 """
 import argparse
+import io
 import pathlib
 import sys
 
@@ -31,8 +32,17 @@ except ImportError as missing:
 _PANEL = (7.5, 2.1)  # inches
 
 
+class NotebookFigure(Figure):
+    """matplotlib's Figure, which a notebook shows as the last value of a cell although pyplot does not know of it."""
+
+    def _repr_png_(self):
+        picture = io.BytesIO()
+        self.savefig(picture, format="png")
+        return picture.getvalue()
+
+
 def _figure(width, height):
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = NotebookFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 

@@ -27,6 +27,8 @@ try:
 except ImportError as missing:
     raise ImportError("pfv.render writes its pictures with matplotlib: install python3-matplotlib") from missing
 
+from .plot import NotebookFigure
+
 # what each module is for: glyphs, tubes, cutting, interpolating; the last three register themselves
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
@@ -295,7 +297,7 @@ def _figure_of(view, norm=None, bounds=None, title=None):
     norm = norm or view.norm()
     lower, upper = bounds or view.bounds()
     pixels = _shot(view.actors(norm), lower, upper, view.cut)
-    figure = Figure(figsize=(8, 6), layout="constrained")
+    figure = NotebookFigure(figsize=(8, 6), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots()
     axes.imshow(pixels if bounds else _without_margins(pixels))
