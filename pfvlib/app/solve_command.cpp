@@ -171,6 +171,7 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Dea
   if (const auto walls = walls_beside(*request.vtk)) by_one([&] {
     const FieldGrid drawn = grid_of_walls(flow.container(), report.faces);
     if (!drawn.types.empty()) write_fields(*walls, drawn);
+    else detail::remove_file(*walls);  // an older one would be taken for this run's
   });
 }
 

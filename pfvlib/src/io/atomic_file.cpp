@@ -95,6 +95,14 @@ void detail::write_file(const std::string& path, std::string_view content) {
   }
 }
 
+void detail::remove_file(const std::string& path) {
+  std::error_code none;
+  if (!fs::is_regular_file(path, none) || is_stream(path)) return;
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT)
+    throw FileError("cannot remove " + path + " of another run: " + std::strerror(errno) +
+                    ": remove it or choose another place");
+}
+
 void write_text(const std::string& path, const std::string& text) { detail::write_file(path, text); }
 
 void require_folder_of(const std::string& path) {

@@ -15,4 +15,7 @@ bool is_standard_output(const std::string& path);
 /// file in the same folder and renames that. A stream is written straight to. Throws FileError.
 void write_file(const std::string& path, std::string_view content);
 
+/// Removes a file, or a link to one, that an earlier run has left at `path`; anything else stays. Throws FileError.
+void remove_file(const std::string& path);
+
 }  // namespace pfv::detail
