@@ -63,6 +63,7 @@ def changed(line, text, rows=PLAIN):
 # --------------------------------------------------------------------------------------------- tables
 
 group("Tables")
+NO_END = ("the last line has no end; its last number may be cut off",)
 read("plain table", PLAIN)
 for separator, word in ((";", "semicolons"), ("\t", "tabs"), (" ", "blanks"), ("   ", "many blanks"),
     (" , ", "commas with blanks"),
@@ -71,7 +72,12 @@ for separator, word in ((";", "semicolons"), ("\t", "tabs"), (" ", "blanks"), ("
 read("blanks before each line", "".join("   " + line + "\n" for line in lines(ROWS, "  ").splitlines()))
 read("line ends of Windows", PLAIN.replace("\n", "\r\n"))
 read("line ends of old Macs", PLAIN.replace("\n", "\r"))
-read("no line end after the last line", PLAIN[:-1])
+read("no line end after the last line", PLAIN[:-1], said=NO_END)
+read("no line end after a last comma", PLAIN.replace("\n", ",\n")[:-1])
+read("no line end after a last quote", lines(
+    [[f'"{field}"' for field in row] for row in [HEADER, *ROWS]], header=None)[:-1])
+read("no line end after a last comment", PLAIN + "# 100")
+read("cut off within the last number, 0.082 for 0.0824", PLAIN[:-16], tolerance=1e-3, said=NO_END)
 read("empty lines between and behind", PLAIN.replace("\n", "\n\n") + "\n  \n")
 read("byte order mark", "\ufeff" + PLAIN)
 read("byte order mark, Windows, semicolons", "\ufeff" + lines(ROWS, ";", end="\r\n"))
@@ -97,6 +103,10 @@ read("comments above, between and below", "# made by a script\n# on a day\n" + c
      + "# end\n")
 read("names in a comment (numpy.savetxt)", "# " + lines(ROWS, " "))
 read("names in a comment with commas", "#" + lines(ROWS))
+read("names in a comment, a comma behind them and each line", "# " + PLAIN.replace("\n", ",\n"))
+read("names in a comment, a comma behind them alone", "# " + changed(1, PLAIN.splitlines()[0] + ",\n"))
+read("names in a comment, a comma behind each line", "# " + changed(1, PLAIN.splitlines()[0] + "\n",
+     PLAIN.replace("\n", ",\n")))
 read("names in a comment of Matlab", "% " + lines(ROWS, " "))
 read("comments of Matlab above", "% made by a script\n" + PLAIN)
 read("names in a comment, another below", "# " + lines([], " ", HEADER) + "# in m\n" + lines(ROWS, " ", header=None))
@@ -129,6 +139,12 @@ refused("two of three velocities", lines([(*row, 0, 0) for row in ROWS], header=
         "column vz is missing")
 refused("a line too short", changed(7, "6,0.5,0.5\n"), ":7:", "3 fields instead of 5")
 refused("cut off within a line", PLAIN[:-60], ":101:", "cut off inside this line, after 3 of 5 fields")
+refused("cut off within the first field", "".join(PLAIN.splitlines(keepends=True)[:-1]) + "10", ":101:",
+        "cut off inside this line, after 1 of 5 fields")
+refused("separated by blanks, cut off within the first field",
+        "".join(lines(ROWS, " ").splitlines(keepends=True)[:-1]) + "10", ":101:",
+        "cut off inside this line, after 1 of 5 fields")
+refused("a line of one field", changed(7, "6\n"), ":7:", "1 fields instead of 5")
 refused("a title above the names", "My packing\n" + PLAIN, ":1:", "must be named here, not 'My packing'")
 refused("units below the names", changed(1, PLAIN.splitlines()[0] + "\n-,m,m,m,m\n"), ":2:", "id is '-'",
         "whole number")
@@ -248,18 +264,21 @@ read("scaled coordinates in another room", dump("id type xs ys zs radius", [
     bounds="-2 2\n" * 3), tolerance=1e-9)
 read("unwrapped coordinates, periodic", dump("id type xu yu zu radius", FAR, "pp pp pp"), tolerance=1e-9,
      said=("periodic",))
-read("scaled unwrapped coordinates, periodic", dump("id type xsu ysu zsu radius", FAR, "pp pp pp"), tolerance=1e-9)
+read("scaled unwrapped coordinates, periodic", dump("id type xsu ysu zsu radius", FAR, "pp pp pp"), tolerance=1e-9,
+     said=("periodic along x y z, and walls stand there now",))
 read("no ids in a dump", dump("x y z radius", [row[1:] for row in ROWS]), said=("numbered from 1",))
 read("units and time of newer LAMMPS", dump(head="ITEM: UNITS\nsi\nITEM: TIME\n0.5\n"))
 read("tilted, no side periodic", dump(sides="xy xz yz ff ff ff", bounds="0 1.25 0.25\n0 1 0\n0 1 0\n"))
-read("tilted and periodic, solved in a box", dump(sides="xy xz yz pp pp pp", bounds="0 1.25 0.25\n0 1 0\n0 1 0\n"))
+read("tilted and periodic, solved in a box", dump(sides="xy xz yz pp pp pp", bounds="0 1.25 0.25\n0 1 0\n0 1 0\n"),
+     said=("periodic along x y z, and walls stand there now",))
 MOVED = dump(rows=[(row[0], 1, *(repr(0.9 * number) for number in numbers[1:4]), row[4]) for row,
     numbers in zip(ROWS, NUMBERS)])
 CELL = [*THROUGH_FLOW[4:], "--gradient", "0", "0", "-1"]
 read("periodic, its own cell", dump(sides="pp pp pp"), flow=CELL, plain=["--periodic", "x,y,z", *UNIT_BOX, *CELL],
      said=("the flow box was taken from it: 0 1 0 1 0 1, periodic",))
 read("unwrapped, its own cell", dump("id type xu yu zu radius", FAR, "pp pp pp"), "--periodic", "dump", flow=CELL,
-     plain=["--periodic", "x,y,z", *UNIT_BOX, *CELL], tolerance=1e-9)
+     plain=["--periodic", "x,y,z", *UNIT_BOX, *CELL], tolerance=1e-9,
+     said=("the flow box was taken from it: 0 1 0 1 0 1, periodic",))
 read("periodic, with another period", dump(sides="pp pp pp"),
      flow=["--periodic", "x,y,z", *UNIT_BOX[:-1], "1.1", *CELL],
      refused=("the length along z of its periodic cell is 1 m", "1.1 m", "--periodic dump"))
@@ -273,9 +292,9 @@ read("two snapshots, chosen by the step", dump(step=500) + MOVED.replace("TIMEST
      "--snapshot", "500",
      said=("of step 500, number 1 of 2",))
 read("two snapshots, chosen by the number", MOVED.replace("TIMESTEP\n0", "TIMESTEP\n100") + dump(step=1000),
-     "--snapshot", "2")
+     "--snapshot", "2", said=("of step 1000, number 2 of 2",))
 read("two snapshots, chosen by the time", dump(step=5, head="ITEM: TIME\n0.25\n") + "ITEM: TIME\n0.5\n" + MOVED,
-     "--snapshot", "time=0.25")
+     "--snapshot", "time=0.25", said=("of step 5, number 1 of 2",))
 TIMES = "".join(dump(step=step, head=f"ITEM: UNITS\nsi\nITEM: TIME\n{step / 20}\n") for step in (5, 10)) \
     + "ITEM: UNITS\nsi\nITEM: TIME\n0.75\n" + MOVED.replace("TIMESTEP\n0", "TIMESTEP\n15")
 read("units and time before each snapshot", TIMES, "--snapshot", "time=0.5", said=("of step 10, number 2 of 3",))
@@ -283,7 +302,8 @@ read("units and time, line ends of Windows", TIMES.replace("\n", "\r\n"), "--sna
      said=("of step 5, number 1 of 3",))
 read("older dump without the kinds of sides", dump(sides="").replace("BOUNDS ", "BOUNDS"))
 read("lines of several processes", dump(rows=[(row[0], 1, *row[1:]) for row in ROWS[50:] + ROWS[:50]]), tolerance=1e-11)
-read("the last cut off, an earlier one chosen", dump(step=10) + dump(step=20)[:-2000], "--snapshot", "10")
+read("the last cut off, an earlier one chosen", dump(step=10) + dump(step=20)[:-2000], "--snapshot", "10",
+     said=("of step 10, number 1 of 2",))
 refused("the last cut off within a line", dump(step=10) + dump(step=20)[:-2000], ":196:", "cut off inside this line")
 refused("the last cut off between lines", dump(step=10) + "".join(dump(step=20).splitlines(keepends=True)[:60]),
         "cut off after 51 of 100 atoms", "--snapshot")
@@ -307,10 +327,10 @@ refused("a dump of contacts", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\nIT
 
 group("YADE, data files, VTK")
 XYZR = lines([row[1:] for row in ROWS], "\t", header=None)
-read("YADE's text", "#format x_y_z_r\n" + XYZR)
+read("YADE's text", "#format x_y_z_r\n" + XYZR, said=("numbered from 1",))
 read("YADE's text without its first line", XYZR, said=("taken as x, y, z and radius",))
 read("YADE's text with materials", "#format x_y_z_r_matId\n" + lines([(*row[1:], 0) for row in ROWS], "\t",
-     header=None))
+     header=None), said=("numbered from 1",))
 GRANULAR = [(row[0], 1, row[4], 2500, *row[1:4]) for row in DIAMETERS]
 
 
@@ -354,16 +374,18 @@ def vtu(arrays, kind="UnstructuredGrid", points=ROWS, pieces=1):
             f'{piece * pieces}</{kind}></VTKFile>\n')
 
 
-read("legacy VTK (LPP)", legacy(RADII))
+read("legacy VTK (LPP)", legacy(RADII), said=("numbered from 1",))
 read("legacy VTK with other fields, as of LIGGGHTS", legacy(RADII, text=f"VERTICES 100 200\n" + "".join(
     f"1 {k}\n" for k in range(100)) + "POINT_DATA 100\nVECTORS f float\n" + "0 0 1\n" * 100 + "SCALARS type int 1\n"
     "LOOKUP_TABLE default\n" + "1\n" * 100 + "FIELD FieldData 2\nid 1 100 int\n" + " ".join(row[0] for row in ROWS)
     + "\nradius 1 100 double\n" + " ".join(RADII) + "\nMETADATA\nINFORMATION 0\n\n"))
-read("legacy VTK with diameters", legacy(TWICE, "diameter"))
+read("legacy VTK without its last line end, other numbers behind", legacy(RADII) + "METADATA\nINFORMATION 0",
+     said=("numbered from 1",))
+read("legacy VTK with diameters", legacy(TWICE, "diameter"), said=("numbered from 1",))
 read(".vtu", vtu({"radius": RADII, "id": [row[0] for row in ROWS]}))
 read(".vtu of YADE", vtu({"radii": RADII}), said=("numbered from 1",))
-read(".vtu, packed", gzip.compress(vtu({"radius": RADII}).encode()))
-read(".vtp", vtu({"diameter": TWICE}, "PolyData"))
+read(".vtu, packed", gzip.compress(vtu({"radius": RADII}).encode()), said=("numbered from 1",))
+read(".vtp", vtu({"diameter": TWICE}, "PolyData"), said=("numbered from 1",))
 refused("legacy VTK, binary", legacy(RADII, kind="BINARY"), "binary legacy VTK", "ASCII")
 refused("legacy VTK, the bounding box of LIGGGHTS", "# vtk DataFile Version 5.1\nGenerated by LIGGGHTS\nASCII\n"
         "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 2\nX_COORDINATES 2 float\n0 1\n", "RECTILINEAR_GRID", "bounding box")
@@ -374,4 +396,5 @@ refused(".vtu in two pieces", vtu({"radius": RADII}, pieces=2), "several pieces"
 refused(".vti, an image", vtu({"radius": RADII}, "ImageData"), "ImageData", ".vtu or .vtp")
 refused(".vtu, cut off", vtu({"radius": RADII})[:-3000], "no whole XML file")
 refused("legacy VTK, cut off within the last number", legacy(RADII)[:-3], "last number may be cut off")
+refused("legacy VTK, cut off within a keyword", legacy(RADII) + "VECTO", "last word may be cut off")
 refused("legacy VTK, cut off", legacy(RADII)[:-2500], "cut off")

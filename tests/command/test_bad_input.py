@@ -63,9 +63,9 @@ class BadInput(CommandTest):
     def test_spheres_that_cannot_be_where_they_are(self):
         header, rows = dense_rows()
         twin = ["777", *rows[4][1:4], "0.01"]
-        self.refuse_packing("\n".join(map(",".join, [header, *rows, twin])), "777", rows[4][0])
+        self.refuse_packing("\n".join(map(",".join, [header, *rows, twin])) + "\n", "777", rows[4][0])
         outside = ["778", "0.5", "0.5", "1.25", "0.3"]
-        self.refuse_packing("\n".join(map(",".join, [header, *rows, outside])), "778")
+        self.refuse_packing("\n".join(map(",".join, [header, *rows, outside])) + "\n", "778")
 
     def test_a_box_that_is_flat_or_inverted_or_no_box(self):
         for box in ("1 0 0 1 0 1", "0 1 0 1 0.5 0.5", "0 1 0 nan 0 1", "0 1 0 inf 0 1",
@@ -148,7 +148,7 @@ class BadInput(CommandTest):
         spheres += [(x, y, z, 0.02, -1 if z > 0.5 else 0)
                     for z in (0.03, 0.97) for x in (0.3, 0.52, 0.7) for y in (0.31, 0.53, 0.69)]
         lines += [f"{k + 1},{x},{y},{z},{r},0,0,{v}" for k, (x, y, z, r, v) in enumerate(spheres)]
-        self.refuse_packing("\n".join(lines), "cut off", arguments=[
+        self.refuse_packing("\n".join(lines) + "\n", "cut off", arguments=[
             "--face", "zlo:pressure=0", "--conductance", "hydraulic_radius"])
 
     def test_output_files_that_cannot_be_made(self):

@@ -113,7 +113,7 @@ class FluidVolume(CommandTest):
     def scaled(self, factor):
         header, rows = dense_rows()
         lines = [",".join([*row[:4], repr(factor * float(row[4]))]) for row in rows]
-        return self.write("scaled.csv", "\n".join([",".join(header), *lines]))
+        return self.write("scaled.csv", "\n".join([",".join(header), *lines]) + "\n")
 
     def test_of_a_dense_packing(self):
         for factor in (0.7, 1.0, 1.3):

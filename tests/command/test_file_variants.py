@@ -33,6 +33,8 @@ class FileVariants(CommandTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         for part in variant.said:
             self.assertIn(part, result.stderr)
+        if not variant.said:
+            self.assertEqual(result.stderr, "")
         if variant.factor is None:
             self.assertIsNone(found)
         else:

@@ -98,7 +98,7 @@ class Outputs(CommandTest):
     def test_forces_keep_ids_and_order_and_their_sum_is_that_of_the_report(self):
         header, rows = dense_rows()
         rows = [[str(3 * int(row[0]) + 1000), *row[1:]] for row in reversed(rows)]
-        packing = self.write("packing.csv", "\n".join(map(",".join, [header, *rows])))
+        packing = self.write("packing.csv", "\n".join(map(",".join, [header, *rows])) + "\n")
         report = self.report("--forces", "forces.csv", *THROUGH_FLOW, packing=packing)
         forces = self.forces("forces.csv")
         self.assertEqual(list(forces), [int(row[0]) for row in rows])
@@ -204,7 +204,7 @@ class Outputs(CommandTest):
         x, y, z = map(float, rows[0][1:4])
         inside = [["501", repr(x + 0.01), rows[0][2], rows[0][3], "0.001"],
                   ["502", rows[0][1], repr(y - 0.01), rows[0][3], "0.002"]]
-        packing = self.write("hidden.csv", "\n".join(map(",".join, [header, *rows, *inside])))
+        packing = self.write("hidden.csv", "\n".join(map(",".join, [header, *rows, *inside])) + "\n")
         result = self.solve("--report", "report.json", "--forces", "forces.csv", *THROUGH_FLOW,
                             packing=packing)
         warnings = [line for line in result.stderr.splitlines() if "hidden" in line]

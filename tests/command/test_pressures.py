@@ -70,7 +70,7 @@ class Pressures(CommandTest):
     def test_a_box_may_have_negative_bounds_with_exponents(self):
         header, rows = dense_rows()
         moved = [[k, repr(float(x) - 0.5), repr(float(y) - 0.5), z, r] for k, x, y, z, r in rows]
-        packing = self.write("moved.csv", "\n".join(map(",".join, [header, *moved])))
+        packing = self.write("moved.csv", "\n".join(map(",".join, [header, *moved])) + "\n")
         box = "--box -5e-1 .5 -0.5 +0.5 -0e0 1.".split()
         report = self.report(*THROUGH_FLOW, packing=packing, box=box)
         self.assert_close(report["permeability"], self.report(*THROUGH_FLOW)["permeability"],

@@ -117,7 +117,11 @@ void refuse_units(const TextLines& lines, const Words& names, double length_unit
 /// Where a line has not as many fields as there are names: what is likely to be the cause.
 void explain_fields(const TextLines& lines, char separator, std::size_t fields, std::size_t names) {
   const std::string counts = "has " + std::to_string(fields) + " fields instead of " + std::to_string(names);
-  if (const char other = separator_of(lines.line()); other != separator && fields == 1)
+  const char other = separator_of(lines.line());
+  Words others;
+  split_fields(lines.line(), other, others);
+  const bool otherwise = others.size() > 1 && (lines.ended() || others.size() == names);  // and not cut off
+  if (other != separator && fields == 1 && otherwise)
     lines.fail(std::string("is separated by ") + name_of_separator(other) + ", and the names of the columns by " +
                name_of_separator(separator) + ": separate all lines alike");
   if (separator == ',' && (fields == 2 * names || fields + 1 == 2 * names))  // all numbers, or all but the id
@@ -128,19 +132,20 @@ void explain_fields(const TextLines& lines, char separator, std::size_t fields, 
 class TableReader {
  public:
   TableReader(const std::string& path, std::string_view text, double length_unit)
-      : path_(path), lines_(path, text), length_unit_(length_unit),
-        most_lines_(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'))) {}
+      : path_(path), text_(text), lines_(path, text), length_unit_(length_unit) {}
 
   PackingFile read() {
     find_names();
     SphereTable table(find_columns(lines_, names_));
-    table.reserve(most_lines_);
+    table.reserve(static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n')));
     for (bool more = first_is_data_ || next(); more; more = next()) {
       if (fields_.size() != names_.size()) explain_fields(lines_, separator_, fields_.size(), names_.size());
       table.add(lines_, fields_);
     }
     file_.packing = table.arrays(path_);
     if (!table.has_ids()) file_.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
+    if (ends_in_a_number())
+      file_.remarks.push_back("the last line has no end; its last number may be cut off");
     return std::move(file_);
   }
 
@@ -151,10 +156,20 @@ class TableReader {
       if (!lines_.next_filled()) return false;
     while (is_comment(lines_.line()));
     split_fields(lines_.line(), separator_, fields_);
-    // a separator behind the last field of lines, or of the names, alone
+    fit_to_names();
+    return true;
+  }
+
+  /// For a separator behind the last field of lines, or of the names, alone.
+  void fit_to_names() {
     if (fields_.size() == names_.size() + 1 && fields_.back().empty()) fields_.pop_back();
     if (fields_.size() + 1 == names_.size() && names_.back().empty()) fields_.emplace_back();
-    return true;
+  }
+
+  /// Whether the file's last character is a number's: nothing tells that this is whole.
+  bool ends_in_a_number() const {
+    const char last = text_.back();
+    return ((last >= '0' && last <= '9') || last == '.') && !is_comment(lines_.line());
   }
 
   /// From the first line that is no comment, or, where that holds numbers, from the comments above.
@@ -170,8 +185,9 @@ class TableReader {
     Words filled = fields_;
     if (filled.back().empty()) filled.pop_back();
     first_is_data_ = all_numbers(filled);
-    if (first_is_data_) fields_ = filled;
     if (!first_is_data_) names_ = fields_;
+    else if (names_.empty()) fields_ = filled;
+    else fit_to_names();
     if (names_.empty() && fields_.size() == 4) {
       names_ = {"x", "y", "z", "r"};
       file_.remarks.push_back("there are no names of columns: the four were taken as x, y, z and radius");
@@ -181,9 +197,9 @@ class TableReader {
   }
 
   std::string path_;
+  std::string_view text_;
   TextLines lines_;
   double length_unit_;
-  std::size_t most_lines_;
   char separator_ = ' ';
   Words names_, fields_;
   bool first_is_data_ = false;  // of the line that find_names() stops at

@@ -99,9 +99,15 @@ class WordReader {
     const std::size_t end = std::min(rest_.find_first_of(" \t\r\n"), rest_.size());
     word_ = rest_.substr(0, end);
     rest_.remove_prefix(end);
+    taken_ = false;
     return true;
   }
   std::string_view word() const { return word_; }
+  /// Whether the file ends, without a blank, in a number that was taken or in what may be part of a keyword; a number
+  /// of what is left out, as of METADATA or CELL_DATA, may end as it likes.
+  bool may_be_cut_off() const {
+    return rest_.empty() && !word_.empty() && (taken_ || !finite_number(word_));
+  }
   std::string_view take(const char* what) {
     if (!next()) throw InputError(path_ + ": is cut off before " + what);
     return word_;
@@ -119,12 +125,14 @@ class WordReader {
       if (!number) throw InputError(path_ + ": " + what + " holds " + detail::quoted(word_) + ", which is no finite number");
       numbers.push_back(*number);
     }
+    taken_ = true;
     return numbers;
   }
 
  private:
   std::string path_;
   std::string_view rest_, word_;
+  bool taken_ = false;  ///< the word, as the last of the numbers asked for
 };
 
 /// `SCALARS name type [components]`, `VECTORS name type`, `FIELD name count` with its arrays.
@@ -380,8 +388,9 @@ PackingFile read_legacy_vtk(const std::string& path, std::string_view text) {
       read_point_data(words, points);
     }
   }
-  if (points.count > 0 && std::string_view(" \t\r\n").find(text.back()) == std::string_view::npos)
-    throw InputError(path + ": ends without a line end: its last number may be cut off; write it anew");
+  if (points.count > 0 && words.may_be_cut_off())
+    throw InputError(path + ": ends without a line end: its last " + (finite_number(words.word()) ? "number" : "word") +
+                     " may be cut off; write it anew");
   return spheres_of(path, points);
 }
 
