@@ -117,10 +117,10 @@ class Walls(CommandTest):
         self.assertEqual(sorted(names.values()),
                          sorted(["bottom", "top"] + [f"shell_{i}" for i in range(1, 17)]))
         self.assertAlmostEqual(volume, math.pi * 0.25 * 0.75, delta=1e-13)
-        for flats in (2, 2.5, 65, "32"):
+        for flats in (2, 2.5, 63, "32", 2**32 + 8, 2**63 + 8):
             self.write("room.json", json.dumps({"planes": ENDS, "cylinders": [{**SHELL, "flats": flats}]}))
             refused = self.run_pfv("solve", "--packing", BEADS, "--container", "room.json", *THROUGH)
-            self.assert_refused(refused, "room.json, cylinders 1", '"flats" is no whole number from 3 to 64')
+            self.assert_refused(refused, "room.json, cylinders 1", '"flats" is no whole number from 3 to 62')
 
     def test_one_sphere_in_a_cylinder_is_refused_with_the_remedy(self):
         self.write("one.csv", "id,x,y,z,radius\n7,0,0,0.4,0.1\n")

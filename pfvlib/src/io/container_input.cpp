@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -75,11 +76,12 @@ std::vector<ContainerFace> read_plane(const std::string& where, const InputJson&
 
 /// So many planes around, of the cylinder's section: shell_1, shell_2, ...
 std::vector<ContainerFace> flats_of(const std::string& where, const ContainerFace& round, const InputJson& count) {
-  constexpr int fewest = 3;
-  if (!count.is_number_integer() || count.get<int>() < fewest || count.get<int>() > most_faces)
-    fail(where, "\"flats\" is no whole number from " + std::to_string(fewest) + " to " + std::to_string(most_faces));
+  constexpr int fewest = 3, most = most_faces - 2;  // and two ends
+  const std::int64_t number = count.is_number_integer() ? count.get<std::int64_t>() : 0;
+  if (number < fewest || number > most)
+    fail(where, "\"flats\" is no whole number from " + std::to_string(fewest) + " to " + std::to_string(most));
   if (!(round.surface.radius > 0.0)) fail(where, "\"radius\" is not positive");
-  const int flats = count.get<int>();
+  const int flats = static_cast<int>(number);
   const Surface& shell = round.surface;
   const double half = pi / flats, apothem = shell.radius * std::sqrt(half / std::tan(half));
   const Eigen::Vector3d first = shell.axis.unitOrthogonal(), second = shell.axis.cross(first);

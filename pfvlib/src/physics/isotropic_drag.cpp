@@ -59,6 +59,12 @@ void for_each_view(const PoreNetwork& network, const Throats& throats, const Sph
       }
 }
 
+/// Of the domain of a throat. That of a pore beyond a wall, as beside one of many sides, is negative in both parts.
+double solid_fraction_of(const Throats& throats, int t) {
+  const double domain = throats.area[t] * throats.length[t] / 3.0;
+  return domain != 0.0 ? std::clamp(1.0 - throats.volume[t] / domain, 0.0, 1.0) : 1.0;
+}
+
 /// B, for the sum of Omega s n n^T to be 4 pi / 3.
 Vector6 weights_for(const Matrix6& facets) {
   const Eigen::SelfAdjointEigenSolver<Matrix6> parts(facets);
@@ -77,8 +83,7 @@ std::vector<double> solid_fractions_around(const PoreNetwork& network, const Thr
   const int spheres = sphere_count(network);
   std::vector<double> sum(spheres, 0.0), angle(spheres, 0.0);
   for_each_view(network, throats, vertices, [&](int t, int k, double seen) {
-    const double domain = throats.area[t] * throats.length[t] / 3.0;
-    sum[k] += std::abs(seen) * (domain > 0.0 ? std::clamp(1.0 - throats.volume[t] / domain, 0.0, 1.0) : 1.0);
+    sum[k] += std::abs(seen) * solid_fraction_of(throats, t);
     angle[k] += std::abs(seen);
   });
   for (int k = 0; k < spheres; ++k) sum[k] = angle[k] > 0.0 ? sum[k] / angle[k] : 1.0;

@@ -98,7 +98,7 @@ void check_shapes(const Container& container) {
   if (container.face_count() < 3 || container.face_count() > most_faces)
     throw InputError("container: it has " + std::to_string(container.face_count()) +
                      " faces; 3 to " + std::to_string(most_faces) +
-                     " are possible (take a cylinder in place of many planes around an axis)");
+                     " are possible (take fewer planes around an axis, as 32, or for a dense bed a cylinder)");
   check_names(container);
   for (const ContainerFace& face : container.faces) require_finite(face, "face " + face.name);
   if (const std::optional<int> cylinder = cylinder_of(container)) check_cylinder(container, *cylinder);
