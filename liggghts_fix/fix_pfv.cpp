@@ -207,21 +207,18 @@ void FixPfv::read_host() {
   faces_.read_pistons(needs_forces());
 }
 
-/// Of grains and periodic sides, for a restart file. Of a flow on several ranks, which is incompressible, none: its
-/// grains may be dealt otherwise in another run. Where the flow is.
-std::optional<std::uint64_t> FixPfv::fingerprint_of_grains() {
-  if (ranks_.are_all()) return {};
-  PfvLeftState state = state_of(grains_);
-  state.faces.clear();
+/// Of grains and periodic sides, for a restart file. Collective where the flow is.
+std::uint64_t FixPfv::fingerprint() {
+  std::vector<double> sides;
   const auto periodic = cell_.axes();
   for (int face = 0; face < pfv::face_count; ++face)
-    if (periodic[face / 2]) state.faces.push_back(cell_.position(face));
-  return fingerprint(state);
+    if (periodic[face / 2]) sides.push_back(cell_.position(face));
+  return ranks_.sum(fingerprint_of_grains(state_of(grains_))) + hash_of(sides.data(), sides.size());
 }
 
 /// Since the last run, or since the restart file was written. Where the flow is.
 bool FixPfv::are_moved() {
-  if (since_.in_restart_file) return *since_.in_restart_file != fingerprint_of_grains();
+  if (since_.in_restart_file) return *since_.in_restart_file != fingerprint();
   if (!flow_.has_left()) return false;
   follow_grains(grains_);
   return !flow_.is_as_left(state_of(grains_));
@@ -246,6 +243,9 @@ void FixPfv::begin_anew_where_moved() {
   since_.face_positions = faces_.positions();
   since_.pivots = faces_.pivots();
   since_.grains = {};
+  on_flow([&] {
+    if (since_.in_restart_file) since_.in_restart_file = fingerprint();  // moved once, not again in the next run
+  });
 }
 
 /// Puts faces where the grains are, if any ask for that. Where the flow is.
@@ -442,7 +442,7 @@ void FixPfv::write_restart(FILE* file) {
     if (flow_ && since_.grains.tags.empty()) since_.grains = grains_.snapshot();
     if (settings_.steps.couple_every > 1 || settings_.steps.couple_error || cell_.changes())
       record.last_grains = gathered(since_.grains, ranks_);
-    record.left = fingerprint_of_grains();
+    record.left = fingerprint();
   });
   on_root([&] {
     record.written = files_->written();

@@ -97,7 +97,7 @@ class FixPfv : public Fix {
   void move_cell(pfv::Container& container) const;
   Eigen::Vector3d cell_lengths_then() const;
   PfvLeftState state_of(const PfvGrainExchange& grains);
-  std::optional<std::uint64_t> fingerprint_of_grains();
+  std::uint64_t fingerprint();
   bool are_moved();
   void begin_anew_where_moved();
   void remember_state();

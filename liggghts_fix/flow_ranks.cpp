@@ -20,6 +20,11 @@ void PfvFlowRanks::reduce(double* values, int count, MPI_Op operation) const {
   if (are_all()) MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, operation, world_);
 }
 
+std::uint64_t PfvFlowRanks::sum(std::uint64_t value) const {
+  if (are_all()) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_UINT64_T, MPI_SUM, world_);
+  return value;
+}
+
 double PfvFlowRanks::sum(double value) const {
   add(&value, 1);
   return value;

@@ -44,6 +44,8 @@ class PfvFlowRanks {
   void take_largest(double* values, int count) const { reduce(values, count, MPI_MAX); }
   double sum(double value) const;
   bool any(bool value) const;
+  /// Modulo 2^64.
+  std::uint64_t sum(std::uint64_t value) const;
   /// What all have, one after the other, on rank 0.
   std::vector<double> gathered(const std::vector<double>& own) const;
 

@@ -34,20 +34,26 @@ inline PfvLeftState left_state(const pfv::Packing& packing, const Eigen::Matrix3
   return state;
 }
 
-/// Of what a restart file keeps this in place of the state: two that differ have different numbers, but for one
-/// pair in 2^64 (FNV-1a, 64 bits).
-inline std::uint64_t fingerprint(const PfvLeftState& state) {
+/// A number of these bytes (FNV-1a, 64 bits, mixed once more so that sums of such numbers tell, too).
+inline std::uint64_t hash_of(const double* values, std::size_t count) {
   std::uint64_t hash = 14695981039346656037u;
-  const auto take = [&hash](const auto& values) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-    const std::size_t size = static_cast<std::size_t>(values.size()) * sizeof *values.data();
-    for (std::size_t k = 0; k < size; ++k) hash = (hash ^ bytes[k]) * 1099511628211u;
-  };
-  take(state.grains.ids);
-  take(state.grains.positions);
-  take(state.grains.radii);
-  take(state.faces);
-  return hash;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(values);
+  for (std::size_t k = 0; k < count * sizeof *values; ++k) hash = (hash ^ bytes[k]) * 1099511628211u;
+  hash = (hash ^ (hash >> 31)) * 0x9e3779b97f4a7c15u;
+  return hash ^ (hash >> 29);
+}
+
+/// Of what a restart file keeps this in place of the state: a sum (modulo 2^64) over its grains, so that their order and
+/// the ranks that have them do not count, and of its faces. Two that differ have different numbers, but for one pair in
+/// 2^64.
+inline std::uint64_t fingerprint_of_grains(const PfvLeftState& state) {
+  std::uint64_t sum = 0;
+  for (Eigen::Index k = 0; k < state.grains.ids.size(); ++k) {
+    const auto place = state.grains.positions.col(k);
+    const double grain[]{static_cast<double>(state.grains.ids[k]), place[0], place[1], place[2], state.grains.radii[k]};
+    sum += hash_of(grain, 5);
+  }
+  return sum;
 }
 
 }  // namespace LAMMPS_NS

@@ -64,6 +64,20 @@ class Restart(CoupledTest):
         for words in ("couple_every 4", "couple_every 1", "", "couple_every 4 model darcy_grid 3 3 3"):
             with self.subTest(words=words):
                 self.compare(f"{forgetful}fix flow all pfv {WATER} {words}\n", by_hand=moved)
+        shared = f"{forgetful}fix flow all pfv {WATER} couple_every 4 solver amg ranks all\n"
+        self.compare(shared, by_hand=moved, ranks=2)
+
+    def test_a_file_of_grains_that_were_moved_before_the_first_run(self):
+        forgetful = "pair_style gran model hooke/stiffness tangential no_history\npair_coeff * *\n"
+        moved = "displace_atoms all random 1e-4 1e-4 1e-4 10007 units box\n"
+        fix = f"{forgetful}fix flow all pfv {WATER} couple_every 4\n"
+        self.compare(fix)
+        rows = []
+        for script in (self.restarted(fix + moved + "write_restart second.restart\n", "run 10\n"),
+                       self.restarted(fix, "run 10\n").replace("file.restart", "second.restart")):
+            self.liggghts(script)
+            rows.append(read_thermo((self.folder / "log.liggghts").read_text()))
+        self.assertEqual(rows[0], rows[1])
 
     def test_counts_go_on(self):
         rows = self.compare(f"fix flow all pfv {FLOW} retriangulate 1e-6\n")

@@ -235,6 +235,14 @@ class SharedFlow(CoupledTest):
                 for step, rows in read_dump(self.folder / "other.dump").items():
                     self.assertLess(largest_difference(forces(rows), forces(expected[step])), 1e-7)
 
+    def test_a_file_of_one_rank_is_continued_in_mid_interval(self):
+        fix, shared = (f"fix flow all pfv {SEEPAGE} couple_every 4 {words}\n" for words in (ALONE, SHARED))
+        self.liggghts(HEAD + fix + "run 10\nwrite_restart file.restart\n" + dump("continued.dump") + "run 10\n")
+        self.liggghts(restarted_head() + shared + dump("shared.dump") + "run 10\n", ranks=2)
+        expected = read_dump(self.folder / "continued.dump")
+        for step, rows in read_dump(self.folder / "shared.dump").items():
+            self.assertLess(largest_difference(forces(rows), forces(expected[step])), 1e-8)
+
     def test_auto_shares_what_amg_is_asked_for(self):
         screen = self.liggghts(HEAD + f"fix flow all pfv {SEEPAGE} solver amg\nrun 1\n", ranks=2)
         self.assertIn("the flow is shared by 2 ranks", screen)
