@@ -4,7 +4,8 @@
 
 `pfv solve` of dense packings on several ranks, and on one from 25 000 grains on; 50 coupled steps of LIGGGHTS on one and
 several ranks; all of it without a word. With `million` up to a million grains, which takes 9 GB. Every packing is made of
-mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some minutes.
+mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some minutes;
+`coupled million` 20.
 """
 import json
 import os

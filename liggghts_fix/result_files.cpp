@@ -161,8 +161,10 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
                                   const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const PfvFlowRanks& ranks) {
   const std::string stem = fields_->path.substr(0, fields_->path.rfind(".pvd")), fluid = flow.field_name();
   const auto write = [&](const std::string& what, const pfv::FieldGrid& grid) {
-    if (ranks.are_all()) pfv::write_fields(file_of(stem, step, what, ".pvtu"), grid, *ranks.library());
-    else pfv::write_fields(file_of(stem, step, what, ".vtu"), grid);
+    const std::string alone = file_of(stem, step, what, ".vtu"), head = file_of(stem, step, what, ".pvtu");
+    if (ranks.are_all()) pfv::write_fields(head, grid, *ranks.library());
+    else pfv::write_fields(alone, grid);
+    if (are_written_) std::filesystem::remove(ranks.are_all() ? alone : head);  // an earlier run's
   };
   write(fluid, flow.fields());
   if (!first_) {
@@ -175,7 +177,9 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
   written_.push_back({step, flow.time()});
   if (!are_written_) return;
   const pfv::FieldGrid walls = pfv::grid_of_walls(flow.container(), faces);
-  if (!walls.types.empty()) pfv::write_fields(file_of(stem, step, "walls", ".vtu"), walls);
+  const std::string of_walls = file_of(stem, step, "walls", ".vtu");
+  if (walls.types.empty()) std::filesystem::remove(of_walls);  // an earlier run's
+  else pfv::write_fields(of_walls, walls);
   std::vector<pfv::CollectionEntry> entries;
   for (const PfvWrittenStep& one : written_) {
     entries.push_back({one.time, 0, head_of(stem, one, fluid)});

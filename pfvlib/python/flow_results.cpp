@@ -164,7 +164,7 @@ Tensors in VTK's order: xx, yy, zz, xy, yz, xz. Cost: as `faces`, and a pass ove
            R"(Strain of the packing around each sphere between two instants, N x 6: xx, yy, zz, xy, xz, yz.
 
 now, before: N x 3 places, m, in the order of the packing; in a periodic cell without wrapping, with the lengths
-edges_before (and tilt_before: xy, xz, yz) of the cell. A row of `before` that is not finite: the sphere was not there.
+edges_before (where it is tilted tilt_before, too: xy, xz, yz) of the cell. A row of `before` that is not finite: the sphere was not there.
 The mean displacement gradient of the tetrahedra around the sphere (Catalano 2012, eqs. 2.20-2.21), over places
 before; extension positive; exact for affine motions of any size. 0 where no tetrahedron without a wall is left.
 Cost: a pass over the cells. Raises InputError for arrays of another shape.)");

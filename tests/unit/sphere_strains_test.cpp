@@ -75,7 +75,8 @@ TEST(SphereStrains, OfAPeriodicCellThatChangesAreExact) {
   const Eigen::Matrix3d back = (Eigen::Matrix3d::Identity() + gradient).inverse();
   Displaced moved = affine(unwrapped, gradient);
   moved.edges_before = back.diagonal();
-  moved.tilt_before = {back(0, 1), back(0, 2), back(1, 2)};
+  EXPECT_THROW(flow.sphere_strains(affine(unwrapped, gradient)), InputError);  // of which cell?
+  moved.tilt_before = Eigen::Vector3d(back(0, 1), back(0, 2), back(1, 2));
   EXPECT_LT(largest_error(flow.sphere_strains(moved), symmetric_part(gradient)), 1e-12);
 }
 
@@ -134,6 +135,18 @@ TEST(SphereStrains, OfSpheresThatCameFromElsewhereAreFinite) {
   const auto strains = flow.sphere_strains(moved);
   EXPECT_TRUE(strains.allFinite());
   EXPECT_LT(strains.cwiseAbs().maxCoeff(), 1e3);
+}
+
+TEST(SphereStrains, OfATiltedCellAskHowItWasTilted) {
+  const PackingArrays packing = data_packing("bed_periodic_64.csv");
+  Box box;
+  box.periodic = {true, true, true};
+  box.tilt = {0.2, 0.0, 0.0};
+  const Flow flow = flow_through(packing, box);
+  Displaced still{packing.positions, packing.positions, Eigen::Vector3d::Ones()};
+  EXPECT_THROW(flow.sphere_strains(still), InputError);
+  still.tilt_before = box.tilt;
+  EXPECT_LT(flow.sphere_strains(still).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(SphereStrains, OfAnotherPackingAreRefused) {

@@ -41,7 +41,8 @@ class DisplacedCells {
         now_(at_spheres(built, moved.now)),
         before_(at_spheres(built, moved.before)),
         lattice_now_{cell.upper - cell.lower, cell.tilt, cell.periodic},
-        lattice_before_{moved.edges_before, moved.tilt_before, cell.periodic} {}
+        lattice_before_{moved.edges_before.value_or(Vector3d::Ones()), moved.tilt_before.value_or(Vector3d::Zero()),
+                        cell.periodic} {}
 
   int sphere(Vertex vertex) const { return built_.network.vertex_sphere[vertex]; }
 
@@ -101,8 +102,10 @@ void require_places(const Displaced& moved, const Container& cell, Eigen::Index 
   if (!moved.now.allFinite())
     throw InputError("sphere_strains: a place is not finite; only those before may be, of spheres that were not there");
   for (int axis = 0; axis < 3; ++axis)
-    if (cell.periodic[axis] && !(moved.edges_before[axis] > 0.0))
+    if (cell.periodic[axis] && !(moved.edges_before && (*moved.edges_before)[axis] > 0.0))
       throw InputError("sphere_strains: the cell is periodic; give the lengths of its edges as they were before");
+  if (!cell.tilt.isZero(0.0) && !moved.tilt_before)
+    throw InputError("sphere_strains: the cell is tilted; give its tilt as it was before");
 }
 
 }  // namespace
