@@ -157,14 +157,15 @@ void parse_face(Words& words, PfvSettings& settings) {
 
 /// From here on the faces have names of their own and may be walls at any angle.
 void parse_container(Words& words, PfvSettings& settings) {
-  if (settings.box.any_periodic())
-    throw pfv::InputError("container: it is closed by walls alone, and the simulation box is periodic; use "
-                          "`boundary f f f`, or the faces of a box in the place of the container");
   for (const PfvFaceSource& source : settings.sources)
-    if (source.kind != Source::none) words.fail("container must come before the faces");
+    if (source.kind != Source::none && source.kind != Source::periodic) words.fail("container must come before the faces");
   settings.container = true;
   settings.sources.clear();
-  if (words.take("walls")) settings.all_walls = take_wall(words).value_or(pfv::Wall::no_slip);
+  const bool walls = words.take("walls");
+  if (!walls && settings.box.any_periodic())
+    throw pfv::InputError("container: it is closed by walls alone, and the simulation box is periodic; take `container "
+                          "walls` or the faces of a box, or use `boundary f f f`");
+  if (walls) settings.all_walls = take_wall(words).value_or(pfv::Wall::no_slip);
   settings.flats = words.take("flats");
 }
 

@@ -24,8 +24,10 @@ struct PfvFaceSource {
   Kind kind = Kind::none;
   double plane = 0.0;  ///< of a box, m
   std::string fix_id;  ///< of the wall or mesh
-  pfv::Surface surface;  ///< plane or, with `extent`, its direction: of a container
-  int part = -1;  ///< which of the walls of a mesh that has several or is round; -1: the mesh is one plane
+  pfv::Surface surface;  ///< plane, flat of a primitive cylinder or, with `extent`, its direction: of a container
+  int part = -1;   ///< which of the walls of a mesh or primitive cylinder that is several, or of a round mesh; -1: one plane
+  int parts = 1;   ///< how many walls that mesh has, also those that bound nothing
+  bool may_bound_nothing = false;  ///< the face may lie behind the others
   pfv::RoundMeshes round = pfv::RoundMeshes::as_cylinders;
 };
 

@@ -126,11 +126,18 @@ void PfvFaceSources::bind_wall(const PfvFaceSource& source, int number) {
   if (!wall) fail(number, "fix '" + source.fix_id + "' is no wall/gran");
   if (wall->is_mesh_wall())
     fail(number, "fix '" + source.fix_id + "' is a mesh wall; name its mesh with `mesh FIX_ID`");
-  const pfv::Surface surface = surface_of(wall, "face " + names_[number] + ": wall '" + source.fix_id + "' ");
+  const std::string what = "face " + names_[number] + ": wall '" + source.fix_id + "' ";
   if (container_) {
-    shapes_[number].surface = surface;
+    pfv::Surface& surface = shapes_[number].surface;
+    surface = surface_of(wall, what);
+    if (source.part < 0) return;  // else a flat that touches the cylinder
+    const double gap = surface.is_plane() ? surface.offset : source.surface.distance(surface.point) - surface.radius;
+    if (surface.is_plane() || std::abs(gap) > 1e-9 * surface.radius)
+      fail(number, "wall '" + source.fix_id + "' is another one than when fix pfv was defined; define fix pfv anew");
+    surface = source.surface;
     return;
   }
+  const pfv::Surface surface = surface_of(wall, what);
   if (!surface.is_plane())
     fail(number, "fix '" + source.fix_id + "' is a cylinder; a face of a box needs a plane: use `container` and "
                  "give each wall a face of its own");
@@ -156,11 +163,8 @@ void PfvFaceSources::bind_part(const PfvFaceSource& source, int number) {
                         "plane mesh of its own");
   const std::vector<pfv::MeshWall> walls = pfv::walls_of_mesh(triangles_of(meshes_[number], world), source.round,
                                                               "face " + names_[number] + ": " + what);
-  const auto parts = std::count_if(sources_.begin(), sources_.end(), [&](const PfvFaceSource& other) {
-    return other.kind == Source::mesh && other.fix_id == source.fix_id;
-  });
-  if (static_cast<std::ptrdiff_t>(walls.size()) != parts)
-    fail(number, what + "has " + std::to_string(walls.size()) + " walls now and had " + std::to_string(parts) +
+  if (static_cast<int>(walls.size()) != source.parts)
+    fail(number, what + "has " + std::to_string(walls.size()) + " walls now and had " + std::to_string(source.parts) +
                      " when fix pfv was defined; define fix pfv anew");
   parts_[number] = walls[source.part];
 }
@@ -206,7 +210,7 @@ std::vector<double> PfvFaceSources::mesh_areas() const {
 
 std::string PfvFaceSources::described(int number) const {
   const PfvFaceSource& source = sources_[number];
-  const pfv::Surface& shape = shapes_[number].surface;
+  const pfv::Surface shape = container_ ? shapes_[number].surface : pfv::Surface();  // a box has planes
   std::ostringstream text;
   text.precision(4);
   text << names_[number] << " (";
@@ -262,8 +266,8 @@ void PfvFaceSources::read_motion_of_part(int number) {
 void PfvFaceSources::read_parts() {
   std::map<FixMeshSurface*, std::vector<pfv::Triangle>> triangles;
   for (int number = 0; number < count(); ++number) {
-    if (sources_[number].part < 0) continue;
     FixMeshSurface* mesh = meshes_[number];
+    if (!mesh || sources_[number].part < 0) continue;
     if (read_since_bound_ && !mesh->triMesh()->isMoving()) continue;
     if (triangles.count(mesh) == 0) triangles[mesh] = triangles_of(mesh, world);
     pfv::follow_mesh(parts_[number], triangles[mesh], true);
@@ -372,10 +376,10 @@ void PfvFaceSources::follow_grains(const PfvGrainTotals& grains) {
   if (container_ && grains.count > 0.0) turn_outwards(grains.mean);
   for (int number = 0; number < count(); ++number) {
     if (sources_[number].kind != Source::extent) continue;
-    if (grains.count == 0.0) fail(number, "`extent` has no grain to follow; the group is empty");
     const int axis = axis_of(number);
     const bool upper = container_ ? shapes_[number].surface.normal[axis] > 0.0 : number % 2 == 1;
-    const double extreme = (upper ? grains.upper : grains.lower)[axis];
+    const double of_grains = (upper ? grains.upper : grains.lower)[axis];
+    const double extreme = grains.count > 0.0 ? of_grains : (upper ? domain->boxhi : domain->boxlo)[axis];
     if (container_) shapes_[number].surface.offset = upper ? extreme : -extreme;
     positions_[number] = extreme;
   }

@@ -37,8 +37,7 @@ class PfvFaceSources : protected Pointers {
 
   /// Whether `follow_grains` has anything to do.
   bool wants_grains() const;
-  /// Puts `extent` faces at the extremes of the grains, where the flow is. Throws pfv::InputError when there
-  /// are none.
+  /// Puts `extent` faces at the extremes of the grains, where the flow is; at the simulation box's sides until there are any.
   void follow_grains(const PfvGrainTotals& grains);
 
   /// m; of a container's faces a number that changes with their place.

@@ -2,6 +2,8 @@
 // `fix pfv`: what holds the fluid, as walls, meshes, grains and variables have it now.
 #include "fix_pfv.h"
 
+#include "pfv/idle_faces.hpp"
+
 #include "error.h"
 #include "input.h"
 #include "modify.h"
@@ -84,6 +86,9 @@ void FixPfv::place_faces(pfv::Container& container) {
       container.faces[number].surface = faces_.surface(number);
     if (!flow_ || !pfv::take_bounds(container, flow_->container())) {
       pfv::Container whole = pfv::container_of(container.faces);
+      std::vector<char> may_be_idle;
+      for (const PfvFaceSource& source : settings_.sources) may_be_idle.push_back(source.may_bound_nothing);
+      pfv::refuse_idle_faces(whole, may_be_idle);
       whole.regions = container.regions;
       container = std::move(whole);
     }
@@ -156,12 +161,14 @@ void FixPfv::warn_of_gaps(const std::vector<double>& mesh_areas) const {
 
 /// What became of each wall: a line for the faces of a container, one for each wall that is none. Where the flow is.
 void FixPfv::say_what_holds_the_fluid() {
-  if (!settings_.container) return;
+  if (!settings_.container && !settings_.all_walls) return;
   const std::string beginning = "Fix pfv (id " + std::string(id) + "): ";
   std::string text;
+  int count = 0;
   for (int number = 0; number < container_.face_count(); ++number)
-    text += (number ? ", " : "") + faces_.described(number);
-  print(beginning + "held by " + std::to_string(container_.face_count()) + " walls: " + units().relabelled(text) + "\n");
+    if (settings_.sources[number].kind != PfvFaceSource::Kind::periodic)
+      text += (count++ ? ", " : "") + faces_.described(number);
+  print(beginning + "held by " + std::to_string(count) + " walls: " + units().relabelled(text) + "\n");
   for (const std::string& reason : settings_.left_out) print(beginning + "left out: " + units().relabelled(reason) + "\n");
 }
 

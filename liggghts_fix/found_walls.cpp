@@ -31,6 +31,9 @@ using Source = PfvFaceSource::Kind;
 constexpr double among_grains = 0.01;
 /// Directions, places and volumes of walls that differ by less are the same: STL files carry some seven digits.
 constexpr double same = 1e-6;
+/// Grains whose middle is further from a cylinder's axis, as a part of its radius, fill it half or less: pores would
+/// reach around the axis.
+constexpr double aside = 0.4;
 
 bool is_obstacle(const PfvSettings& settings, const std::string& id) {
   return std::any_of(settings.obstacles.begin(), settings.obstacles.end(),
@@ -59,6 +62,32 @@ bool same_plane(const pfv::Surface& a, const pfv::Surface& b, double nothing) {
   return (a.normal - way * b.normal).norm() < same && std::abs(a.offset - way * b.offset) < same * std::abs(a.offset) + nothing;
 }
 
+/// The plane with a place on its inner side.
+pfv::Surface facing(const pfv::Surface& surface, const Eigen::Vector3d& inside) {
+  if (!surface.is_plane() || surface.distance(inside) >= 0.0) return surface;
+  return pfv::Surface::plane(-surface.normal, surface.offset * surface.normal);
+}
+
+/// Whether a face's plane lies behind that of another face. Grains end before all walls, also those still to come.
+bool is_behind_another(std::size_t face, const pfv::Surface& plane, const PfvSettings& settings,
+                       const std::vector<std::vector<pfv::Surface>>& surfaces, const Eigen::Vector3d& middle) {
+  if (!plane.is_plane() || settings.sources[face].kind == Source::extent) return false;
+  const pfv::Surface far = facing(plane, middle);
+  for (std::size_t other = 0; other < surfaces.size(); ++other) {
+    if (other == face || surfaces[other].size() != 1 || !surfaces[other][0].is_plane()) continue;
+    const bool extreme = settings.sources[other].kind == Source::extent;
+    const pfv::Surface near = extreme ? surfaces[other][0] : facing(surfaces[other][0], middle);
+    if ((far.normal - near.normal).norm() < same && (extreme || far.distance(middle) > near.distance(middle))) return true;
+  }
+  return false;
+}
+
+bool any_cylinder(const std::vector<std::vector<pfv::Surface>>& of_faces) {
+  return std::any_of(of_faces.begin(), of_faces.end(), [](const std::vector<pfv::Surface>& surfaces) {
+    return std::any_of(surfaces.begin(), surfaces.end(), [](const pfv::Surface& surface) { return !surface.is_plane(); });
+  });
+}
+
 /// A cylinder goes with two planes square to it and nothing else.
 bool cylinders_fit(const std::vector<std::vector<pfv::Surface>>& of_faces) {
   std::vector<pfv::Surface> surfaces;
@@ -76,12 +105,10 @@ bool cylinders_fit(const std::vector<std::vector<pfv::Surface>>& of_faces) {
 std::optional<double> volume_within(const std::vector<std::vector<pfv::Surface>>& of_faces, const Eigen::Vector3d& middle) {
   std::vector<pfv::ContainerFace> faces;
   for (const auto& surfaces : of_faces)
-    for (pfv::Surface surface : surfaces) {
-      if (surface.is_plane() && surface.distance(middle) < 0.0)
-        surface = pfv::Surface::plane(-surface.normal, surface.offset * surface.normal);
+    for (const pfv::Surface& surface : surfaces) {
       faces.emplace_back();
       faces.back().name = std::to_string(faces.size());
-      faces.back().surface = surface;
+      faces.back().surface = facing(surface, middle);
     }
   try {
     return pfv::volume_of(pfv::container_of(faces));
@@ -90,16 +117,16 @@ std::optional<double> volume_within(const std::vector<std::vector<pfv::Surface>>
   }
 }
 
-/// The face becomes as many as its mesh has walls; a variable feeds them all.
-void split(PfvSettings& settings, std::size_t number, std::size_t parts) {
+/// The face becomes as many as these of its mesh's walls; a variable feeds them all.
+void split(PfvSettings& settings, std::size_t number, const std::vector<std::size_t>& kept, std::size_t parts) {
   const pfv::ContainerFace face = settings.faces[number];
-  if (face.boundary.imposes_flux() && parts > 1)
+  if (face.boundary.imposes_flux() && kept.size() > 1)
     throw pfv::InputError("face " + face.name + ": its mesh has " + std::to_string(parts) +
                           " walls, and a flux goes through one; make that a mesh of its own");
   const std::vector<PfvBinding> bindings = settings.bindings;
-  for (std::size_t part = 0; part < parts; ++part) {
-    const std::size_t at = part == 0 ? number : settings.faces.size();
-    if (part > 0) {
+  for (const std::size_t part : kept) {
+    const std::size_t at = part == kept.front() ? number : settings.faces.size();
+    if (part != kept.front()) {
       settings.faces.push_back(face);
       settings.sources.push_back(settings.sources[number]);
       for (PfvBinding binding : bindings) {
@@ -109,7 +136,44 @@ void split(PfvSettings& settings, std::size_t number, std::size_t parts) {
       }
     }
     settings.sources[at].part = static_cast<int>(part);
+    settings.sources[at].parts = static_cast<int>(parts);
+    settings.sources[at].may_bound_nothing = true;  // above a free surface, for instance
     if (parts > 1) settings.faces[at].name = face.name + "_" + std::to_string(part + 1);
+  }
+}
+
+/// Of a cell with periodic axes the face that a plane is: normal to another axis, with the fluid on its inner side.
+std::optional<std::size_t> face_of_cell(const std::vector<pfv::Surface>& surfaces, const PfvSettings& settings,
+                                        const Eigen::Vector3d& middle) {
+  if (surfaces.size() != 1 || !surfaces[0].is_plane()) return {};
+  const Eigen::Vector3d normal = facing(surfaces[0], middle).normal;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (!settings.box.periodic[axis] && std::abs(normal[static_cast<Eigen::Index>(axis)]) > 1.0 - same)
+      return 2 * axis + (normal[static_cast<Eigen::Index>(axis)] > 0.0 ? 1 : 0);
+  return {};
+}
+
+/// The faces of a box that the cell is, empty along its periodic axes.
+void become_box(PfvSettings& settings, const std::array<std::optional<std::size_t>, pfv::face_count>& chosen) {
+  const PfvSettings before = settings;
+  settings.container = false;
+  settings.faces.clear();
+  settings.sources.assign(pfv::face_count, {});
+  for (PfvBinding& binding : settings.bindings)
+    for (std::size_t face = 0; binding.of == PfvBinding::Of::face && face < chosen.size(); ++face)
+      if (chosen[face] == before.bindings[static_cast<std::size_t>(&binding - settings.bindings.data())].number)
+        binding.number = face;
+  for (std::size_t face = 0; face < chosen.size(); ++face) {
+    PfvFaceSource& source = settings.sources[face];
+    if (!chosen[face]) {
+      source.kind = Source::periodic;
+      continue;
+    }
+    source = before.sources[*chosen[face]];
+    const auto axis = static_cast<Eigen::Index>(face / 2);
+    if (source.kind == Source::plane) source.plane = source.surface.offset * source.surface.normal[axis];
+    settings.box.faces[face].wall = before.faces[*chosen[face]].wall;
+    settings.box.faces[face].boundary = before.faces[*chosen[face]].boundary;
   }
 }
 
@@ -134,7 +198,7 @@ Fix* PfvFoundWalls::fix_named(const std::string& id) const {
   return index < 0 ? nullptr : modify->fix[index];
 }
 
-Eigen::Vector3d PfvFoundWalls::middle_of_grains() const {
+std::optional<Eigen::Vector3d> PfvFoundWalls::mean_of_grains() const {
   std::array<double, 4> sums{};
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit_)) continue;
@@ -142,9 +206,24 @@ Eigen::Vector3d PfvFoundWalls::middle_of_grains() const {
     for (int k = 0; k < 3; ++k) sums[k] += atom->x[i][k];
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 4, MPI_DOUBLE, MPI_SUM, world);
-  if (sums[3] > 0.0) return Eigen::Vector3d(sums[0], sums[1], sums[2]) / sums[3];
+  if (!(sums[3] > 0.0)) return {};
+  return Eigen::Vector3d(sums[0], sums[1], sums[2]) / sums[3];
+}
+
+/// Until there are grains, that of the simulation's box.
+Eigen::Vector3d PfvFoundWalls::middle_of_grains() const {
+  if (const std::optional<Eigen::Vector3d> mean = mean_of_grains()) return *mean;
   return 0.5 * (Eigen::Vector3d(domain->boxlo[0], domain->boxlo[1], domain->boxlo[2]) +
                 Eigen::Vector3d(domain->boxhi[0], domain->boxhi[1], domain->boxhi[2]));
+}
+
+bool PfvFoundWalls::grains_lie_aside(const std::vector<Surfaces>& surfaces) const {
+  const std::optional<Eigen::Vector3d> mean = mean_of_grains();
+  if (!mean) return false;
+  for (const Surfaces& some : surfaces)
+    for (const pfv::Surface& surface : some)
+      if (!surface.is_plane() && surface.distance(*mean) < (1.0 - aside) * surface.radius) return true;
+  return false;
 }
 
 /// Grains within all surfaces, and the others.
@@ -201,6 +280,7 @@ void PfvFoundWalls::add_walls(PfvSettings& settings, std::vector<std::string>& l
     face.wall = *settings.all_walls;
     settings.faces.push_back(face);
     settings.sources.push_back(source);
+    settings.sources.back().may_bound_nothing = true;
   }
   for (std::size_t f = 0; f < settings.faces.size(); ++f)
     if (settings.sources[f].kind == Source::none)
@@ -248,6 +328,12 @@ std::vector<PfvFoundWalls::Surfaces> PfvFoundWalls::surfaces_of_faces(PfvSetting
     settings.sources[f].round = round;
     surfaces.push_back(surfaces_of(settings.sources[f], settings.faces[f].name));
   }
+  if (round == pfv::RoundMeshes::as_cylinders) return surfaces;
+  Surfaces beside;  // those of meshes that go around
+  for (const Surfaces& some : surfaces)
+    if (some.size() > 1) beside.insert(beside.end(), some.begin(), some.end());
+  for (Surfaces& some : surfaces)
+    if (some.size() == 1 && !some[0].is_plane()) some = pfv::flats_around(some[0], beside);
   return surfaces;
 }
 
@@ -259,11 +345,12 @@ void PfvFoundWalls::drop_walls_that_bound_nothing(PfvSettings& settings, std::ve
   for (std::size_t f = settings.faces.size(); f-- > named;) {
     std::vector<Surfaces> others = surfaces;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(f));
+    const bool behind = surfaces[f].size() == 1 && is_behind_another(f, surfaces[f][0], settings, surfaces, middle);
     const std::optional<double> with = volume_within(surfaces, middle), without = volume_within(others, middle);
     const bool doubled = std::any_of(others.begin(), others.end(), [&](const Surfaces& other) {
       return surfaces[f].size() == 1 && other.size() == 1 && same_plane(surfaces[f][0], other[0], nothing);
     });
-    if (!doubled && (!with || !without || std::abs(*without - *with) > same * *with)) continue;
+    if (!doubled && !behind && (!with || !without || std::abs(*without - *with) > same * *with)) continue;
     left_out.push_back((settings.sources[f].kind == Source::mesh ? "mesh '" : "wall '") + settings.faces[f].name + "' bounds nothing, since others keep the fluid from it");
     settings.faces.erase(settings.faces.begin() + static_cast<std::ptrdiff_t>(f));
     settings.sources.erase(settings.sources.begin() + static_cast<std::ptrdiff_t>(f));
@@ -271,16 +358,68 @@ void PfvFoundWalls::drop_walls_that_bound_nothing(PfvSettings& settings, std::ve
   }
 }
 
-void PfvFoundWalls::split_meshes(PfvSettings& settings, const std::vector<Surfaces>& surfaces) const {
+/// The numbers of a face's walls. A cylinder has one plane on either side: the lid of a can above the grains' extreme goes.
+std::vector<std::size_t> PfvFoundWalls::kept_parts(const PfvSettings& settings, std::size_t face,
+                                                   const std::vector<Surfaces>& surfaces,
+                                                   std::vector<std::string>& left_out) const {
+  const Eigen::Vector3d middle = middle_of_grains();
+  const bool round = any_cylinder(surfaces);
+  std::vector<std::size_t> kept;
+  for (std::size_t part = 0; part < surfaces[face].size(); ++part) {
+    if (!round || !is_behind_another(face, surfaces[face][part], settings, surfaces, middle))
+      kept.push_back(part);
+    else
+      left_out.push_back("wall " + std::to_string(part + 1) + " of mesh '" + settings.sources[face].fix_id +
+                         "' bounds nothing, since others keep the fluid from it");
+  }
+  return kept;
+}
+
+void PfvFoundWalls::split_walls(PfvSettings& settings, const std::vector<Surfaces>& surfaces,
+                                std::vector<std::string>& left_out) const {
   for (std::size_t f = 0; f < surfaces.size(); ++f) {
-    if (settings.sources[f].kind != Source::mesh) continue;
+    const bool mesh = settings.sources[f].kind == Source::mesh;
     const std::size_t parts = surfaces[f].size();
     if (parts > static_cast<std::size_t>(pfv::most_faces))
       throw pfv::InputError("face " + settings.faces[f].name + ": mesh '" + settings.sources[f].fix_id + "' has " +
                             std::to_string(parts) + " planes; a container has at most " +
                             std::to_string(pfv::most_faces) + " faces: make the wall of fewer flats");
-    if (parts > 1 || (parts == 1 && !surfaces[f][0].is_plane())) split(settings, f, parts);
+    if (parts < 2 && !(mesh && parts == 1 && !surfaces[f][0].is_plane())) continue;
+    if (const std::vector<std::size_t> kept = kept_parts(settings, f, surfaces, left_out); !kept.empty())
+      split(settings, f, kept, parts);
+    if (!mesh)
+      for (PfvFaceSource& source : settings.sources)
+        if (source.kind == Source::wall && source.part >= 0 && source.fix_id == settings.sources[f].fix_id)
+          source.surface = surfaces[f][static_cast<std::size_t>(source.part)];
   }
+}
+
+/// The walls along the axes that are not periodic, which alone a periodic cell has: two planes along each.
+void PfvFoundWalls::make_cell(PfvSettings& settings, const std::vector<Surfaces>& surfaces, std::size_t named,
+                              std::vector<std::string>& left_out) const {
+  const Eigen::Vector3d middle = middle_of_grains();
+  std::array<std::optional<std::size_t>, pfv::face_count> chosen;
+  for (std::size_t f = 0; f < surfaces.size(); ++f) {
+    const std::string what = "face " + settings.faces[f].name;
+    const std::optional<std::size_t> face = face_of_cell(surfaces[f], settings, middle);
+    if (!face && f < named)
+      throw pfv::InputError(what + ": the simulation box is periodic, and such a cell has plane walls normal to its other "
+                            "axes alone; take it out, or use `boundary f f f`");
+    if (!face) left_out.push_back(what + " is no plane normal to an axis that is not periodic");
+    if (!face) continue;
+    if (is_behind_another(f, surfaces[f][0], settings, surfaces, middle)) {
+      left_out.push_back("wall '" + settings.faces[f].name + "' bounds nothing, since others keep the fluid from it");
+      continue;
+    }
+    if (chosen[*face] && f < named)
+      throw pfv::InputError(what + " and face " + settings.faces[*chosen[*face]].name + " are on one side; take one out");
+    if (!chosen[*face]) chosen[*face] = f;
+  }
+  for (const pfv::Face face : pfv::all_faces)
+    if (const auto number = static_cast<std::size_t>(face); !settings.box.periodic[number / 2] && !chosen[number])
+      throw pfv::InputError(std::string("container walls: no wall bounds the periodic cell on its side ") + pfv::name_of(face) +
+                            "; give it a face there: `face NAME plane X Y Z NX NY NZ` or `face NAME extent AXIS lo` or `hi`");
+  become_box(settings, chosen);
 }
 
 std::vector<std::string> PfvFoundWalls::complete(PfvSettings& settings) const {
@@ -290,12 +429,18 @@ std::vector<std::string> PfvFoundWalls::complete(PfvSettings& settings) const {
   if (settings.all_walls) add_walls(settings, left_out);
   const auto round = settings.flats ? pfv::RoundMeshes::as_flats : pfv::RoundMeshes::as_cylinders;
   std::vector<Surfaces> surfaces = surfaces_of_faces(settings, round);
+  if (settings.box.any_periodic()) {
+    make_cell(settings, surfaces, named, left_out);
+    return left_out;
+  }
   if (settings.all_walls) drop_walls_that_bound_nothing(settings, surfaces, named, left_out);
-  if (!cylinders_fit(surfaces)) surfaces = surfaces_of_faces(settings, pfv::RoundMeshes::as_flats);
-  split_meshes(settings, surfaces);
+  if (!cylinders_fit(surfaces) || grains_lie_aside(surfaces)) surfaces = surfaces_of_faces(settings, pfv::RoundMeshes::as_flats);
+  split_walls(settings, surfaces, left_out);
   if (settings.faces.size() >= 3) return left_out;
-  std::string text = "container: it has " + std::to_string(settings.faces.size()) +
-                     " faces; give each wall `face NAME (plane ... | wall FIX_ID | mesh FIX_ID | extent ...)`";
+  std::string text = "container: it has " + std::to_string(settings.faces.size()) + " faces and takes 3 or more; " +
+                     (settings.all_walls ? "give each side that no fix wall/gran of the script closes `face NAME (plane X Y Z "
+                                           "NX NY NZ | extent AXIS lo or hi)`, for instance the simulation box's sides"
+                                         : "give each wall `face NAME (plane ... | wall FIX_ID | mesh FIX_ID | extent ...)`");
   for (const std::string& reason : left_out) text += "; left out: " + reason;
   throw pfv::InputError(text);
 }

@@ -7,6 +7,7 @@
 
 #include "pointers.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,12 +40,18 @@ class PfvFoundWalls : protected Pointers {
   void add_walls(PfvSettings& settings, std::vector<std::string>& left_out) const;
   void drop_walls_that_bound_nothing(PfvSettings& settings, std::vector<Surfaces>& surfaces, std::size_t named,
                                      std::vector<std::string>& left_out) const;
-  void split_meshes(PfvSettings& settings, const std::vector<Surfaces>& surfaces) const;
+  void split_walls(PfvSettings& settings, const std::vector<Surfaces>& surfaces, std::vector<std::string>& left_out) const;
+  std::vector<std::size_t> kept_parts(const PfvSettings& settings, std::size_t face, const std::vector<Surfaces>& surfaces,
+                                      std::vector<std::string>& left_out) const;
+  void make_cell(PfvSettings& settings, const std::vector<Surfaces>& surfaces, std::size_t named,
+                 std::vector<std::string>& left_out) const;
   std::vector<Surfaces> surfaces_of_faces(PfvSettings& settings, pfv::RoundMeshes round) const;
   Surfaces surfaces_of(const PfvFaceSource& source, const std::string& face) const;
   std::string reason_to_leave_out(const PfvWall& wall) const;
   std::pair<long, long> grains_on_both_sides(const Surfaces& surfaces) const;
+  std::optional<Eigen::Vector3d> mean_of_grains() const;
   Eigen::Vector3d middle_of_grains() const;
+  bool grains_lie_aside(const std::vector<Surfaces>& surfaces) const;
   double extreme_of_grains(int axis, bool upper) const;
   class Fix* fix_named(const std::string& id) const;
 

@@ -113,15 +113,21 @@ class Containers(CoupledTest):
                      "container", "2 faces")
         self.refused(pipe + f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom} "
                      "face side plane 0 0 0.1 0 0 -1\nrun 0\n", "side", "twice")
-        self.refused(pipe + f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom} "
-                     "face top plane 0 0 0.1 0.2 0 -1\nrun 0\n", "top", "not square")
         self.refused(pipe + "fix flow all pfv viscosity 0.01 " + faces(xlo="wall shell") + "\nrun 0\n",
                      "cylinder", "container")
         self.refused(HEAD + f"fix flow all pfv viscosity 0.01 {faces()} container\nrun 0\n", "before the faces")
         write_plate(self.folder / "bent.stl", [(0, 0, EDGE), (0.1, 0, EDGE + 0.02), (0.1, 0.1, EDGE), (0, 0.1, EDGE)])
         self.refused(pipe + "fix bent all mesh/surface file bent.stl type 1\n"
                      f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom} face top mesh bent\n"
-                     "run 0\n", "top_1", "not square")
+                     "run 0\n", "container", "it is open")
+
+    def test_a_cylinder_under_a_leaning_roof_is_of_flats(self):
+        write_data(self.folder, in_pipe(packing(8)))
+        said = self.liggghts(HEAD + PIPE + f"fix flow all pfv viscosity 0.01 container face side wall shell face bottom wall "
+                             f"floor pressure 10 face top plane {MIDDLE} {MIDDLE} {EDGE} 0.2 0 -1 pressure 0\n" + THERMO + "run 2\n")
+        self.assertIn("held by 34 walls: side_1 (wall 'shell', plane)", said)
+        self.assertIn(f"container of {32 * math.tan(math.pi / 32) * RADIUS**2 * EDGE:.4g} m3", said)
+        self.assertLess(read_thermo((self.folder / "log.liggghts").read_text())[-1]["flow[4]"], 1e-12)
 
 
 if __name__ == "__main__":

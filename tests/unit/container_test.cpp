@@ -2,6 +2,7 @@
 // Planes at any angle and cylinders: what a container holds is what its pores hold, and a box is one of them.
 #include "pfv/container.hpp"
 #include "pfv/flow.hpp"
+#include "pfv/idle_faces.hpp"
 #include "physics/cell_volumes.hpp"
 #include "problem/container_geometry.hpp"
 #include "support/boxes.hpp"
@@ -166,6 +167,24 @@ TEST(Containers, ACubeOfSixPlanesIsTheBox) {
     EXPECT_LT((one - other).cwiseAbs().maxCoeff(), 1e-10 * one.cwiseAbs().maxCoeff());
     EXPECT_NEAR(*oblique.report().permeability / *upright.report().permeability, 1.0, 1e-10);
   }
+}
+
+TEST(Containers, FacesBehindTheOthersChangeNothing) {
+  const pfv::PackingArrays packing = data_packing("packing_100.csv");
+  const pfv::Container cube = driven(turned_cube(Eigen::Matrix3d::Identity()), "zlo", "zhi");
+  pfv::Flow alone(cube, viscosity_one());
+  std::vector<pfv::ContainerFace> faces = cube.faces;
+  faces.insert(faces.begin() + 2, plane_face("lid", {0.0, 0.0, 1.0}, {0.0, 0.0, 1.3}));
+  faces.push_back(plane_face("beyond an edge", {1.0, 1.0, 0.0}, {1.1, 1.1, 0.0}));
+  faces.push_back(plane_face("beyond a corner", {-1.0, 1.0, 1.0}, {0.0, 1.2, 1.0}));
+  pfv::Flow more(pfv::container_of(faces), viscosity_one());
+  const Eigen::Matrix3Xd expected = alone.evaluate(packing.view()).total;
+  EXPECT_LT((more.evaluate(packing.view()).total - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+  EXPECT_NEAR(more.report().volumes.container / alone.report().volumes.container, 1.0, 1e-14);
+  EXPECT_LT(more.report().force_balance_error, 1e-13);
+  EXPECT_EQ(more.face_forces()[2].norm(), 0.0);
+  EXPECT_THROW(pfv::refuse_idle_faces(more.container(), {0, 0, 0, 0, 0, 0, 0, 1, 1}), pfv::InputError);
+  EXPECT_NO_THROW(pfv::refuse_idle_faces(more.container(), {0, 0, 1, 0, 0, 0, 0, 1, 1}));
 }
 
 TEST(Containers, ATurnedCylinderIsTheSameCylinder) {
@@ -358,7 +377,9 @@ TEST(Containers, RandomOnesCloseAndBalanceOrAreRefusedWithAReason) {
 TEST(Containers, WhatCannotHoldFluidIsRefusedByName) {
   const auto refused = [](std::vector<pfv::ContainerFace> faces, const std::string& what) {
     try {
-      pfv::check(pfv::container_of(std::move(faces)));
+      const pfv::Container container = pfv::container_of(std::move(faces));
+      pfv::check(container);
+      pfv::refuse_idle_faces(container);
       ADD_FAILURE() << "accepted: " << what;
     } catch (const pfv::InputError& error) {
       EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();

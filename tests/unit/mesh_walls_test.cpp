@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Walls of triangle meshes: planes by coplanar groups, cylinders by flats around an axis.
+#include "pfv/container.hpp"
 #include "pfv/error.hpp"
 #include "pfv/mesh_walls.hpp"
 #include "support/packings.hpp"
@@ -126,6 +127,64 @@ TEST(MeshWalls, AMeshThatIsNotConvexIsRefusedWithTheTriangle) {
       ball.push_back(triangle.array() + 0.001 * i * i);
   EXPECT_THROW(walls_of(ball), pfv::InputError);
   EXPECT_THROW(walls_of({Triangle::Zero()}), pfv::InputError);
+}
+
+/// A tube in bands, each turned by half a step against the one below: no two triangles lie on one plane.
+std::vector<Triangle> remeshed_tube(int around, int bands, double radius, double height, const Eigen::Isometry3d& place) {
+  std::vector<Triangle> mesh;
+  const double half = pi / around;
+  for (int band = 0; band < bands; ++band)
+    for (int i = 0; i < around; ++i) {
+      const double z = height * band / bands, above = height * (band + 1) / bands, a = (2 * i + band) * half;
+      Triangle first, second;
+      first << rounded(place * on_circle(radius, a, z)), rounded(place * on_circle(radius, a + 2 * half, z)),
+          rounded(place * on_circle(radius, a + half, above));
+      second << rounded(place * on_circle(radius, a + half, above)), rounded(place * on_circle(radius, a + 2 * half, z)),
+          rounded(place * on_circle(radius, a + 3 * half, above));
+      mesh.push_back(first);
+      mesh.push_back(second);
+    }
+  return mesh;
+}
+
+TEST(MeshWalls, ARemeshedTubeIsACylinder) {
+  const std::vector<Triangle> mesh = remeshed_tube(26, 24, 0.035, 0.35, somewhere());
+  std::vector<MeshWall> walls = walls_of(mesh);
+  ASSERT_EQ(walls.size(), 1u);
+  const Vector axis = somewhere().linear() * Vector::UnitZ();
+  EXPECT_NEAR(std::abs(walls[0].surface.axis.dot(axis)), 1.0, 1e-10);
+  EXPECT_NEAR(pfv::Surface::cylinder(axis, walls[0].surface.point, 1.0).distance(somewhere() * Vector(0.0, 0.0, 9.0)), 1.0, 1e-5);
+  const double section = 13.0 * std::sin(pi / 13.0);  // of 26 flats, over the square of the radius of their corners
+  EXPECT_NEAR(walls[0].surface.radius / (0.035 * std::sqrt(section / pi)), 1.0, 2e-3);
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.translate(Vector(1.0, 2.0, 3.0)).rotate(Eigen::AngleAxisd(0.4, Vector::UnitX()));
+  std::vector<MeshWall> flats = walls_of(mesh, RoundMeshes::as_flats);
+  ASSERT_EQ(flats.size(), 32u);
+  const Vector before = flats[5].surface.normal;
+  std::vector<Triangle> moved;
+  for (const Triangle& triangle : mesh) moved.emplace_back((motion.linear() * triangle).colwise() + Vector(motion.translation()));
+  pfv::follow_mesh(flats[5], moved, true);
+  EXPECT_LT((flats[5].surface.normal - motion.linear() * before).norm(), 1e-12);
+}
+
+TEST(MeshWalls, ASiloOfManyFlatsHasFewerAndItsVolume) {
+  std::vector<Triangle> mesh = funnel(82, 0.02, 0.135, 0.2, somewhere());
+  Eigen::Isometry3d above = somewhere();
+  above.translate(Vector(0.0, 0.0, 0.2));
+  for (const Triangle& triangle : funnel(82, 0.135, 0.135, 0.2, above)) mesh.push_back(triangle);
+  const std::vector<MeshWall> walls = walls_of(mesh);
+  ASSERT_EQ(walls.size(), 48u);
+  std::vector<pfv::ContainerFace> faces;
+  const auto add = [&](const pfv::Surface& surface) {
+    faces.emplace_back();
+    faces.back().name = std::to_string(faces.size());
+    faces.back().surface = surface;
+  };
+  for (const MeshWall& wall : walls) add(wall.surface);
+  for (const double z : {0.0, 0.4}) add(pfv::Surface::plane(somewhere().linear() * Vector(0.0, 0.0, z > 0.0 ? 1.0 : -1.0), somewhere() * Vector(0.0, 0.0, z)));
+  const double polygon = 41.0 * std::sin(pi / 41.0);
+  const double volume = polygon * (0.135 * 0.135 * 0.2 + 0.2 / 3.0 * (0.135 * 0.135 + 0.135 * 0.02 + 0.02 * 0.02));
+  EXPECT_NEAR(pfv::volume_of(pfv::container_of(faces)) / volume, 1.0057, 1e-3);  // 24 flats around a circle: tan(pi/24) / (pi/24)
 }
 
 TEST(MeshWalls, FollowAMotion) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/pi.hpp"
 #include "pfv/error.hpp"
+#include "pfv/idle_faces.hpp"
 #include "pfv/io.hpp"
 
 #include <Eigen/Geometry>
@@ -134,7 +135,9 @@ Container read_container(const std::string& path) {
   add_faces(faces, path, json, "planes", read_plane);
   add_faces(faces, path, json, "cylinders", read_cylinder);
   if (faces.empty()) fail(path, "it has neither planes nor cylinders");
-  return container_of(std::move(faces));
+  Container container = container_of(std::move(faces));
+  refuse_idle_faces(container);
+  return container;
 }
 
 }  // namespace pfv

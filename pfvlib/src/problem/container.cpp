@@ -2,6 +2,7 @@
 #include "pfv/container.hpp"
 
 #include "pfv/error.hpp"
+#include "pfv/idle_faces.hpp"
 #include "problem/box_changes.hpp"
 #include "problem/container_geometry.hpp"
 #include "text/number_text.hpp"
@@ -102,14 +103,6 @@ void check_shapes(const Container& container) {
   check_names(container);
   for (const ContainerFace& face : container.faces) require_finite(face, "face " + face.name);
   if (const std::optional<int> cylinder = cylinder_of(container)) check_cylinder(container, *cylinder);
-}
-
-void check_areas(const Container& container) {
-  const std::vector<double> areas = geometry_of(container, container.lower).areas;
-  for (int f = 0; f < container.face_count(); ++f)
-    if (!(areas[f] > 0.0))
-      throw InputError("container: face " + container.faces[f].name +
-                       " bounds nothing, since others keep the fluid from it; remove it, or turn its normal");
 }
 
 void check_patches(const Container& container) {
@@ -228,7 +221,14 @@ void check(const Container& container) {
   }
   check_conditions(container);
   require_different_planes(container);
-  check_areas(container);
+}
+
+void refuse_idle_faces(const Container& container, const std::vector<char>& may) {
+  const std::vector<double> areas = face_areas(container);
+  for (int f = 0; f < container.face_count(); ++f)
+    if (!(areas[f] > 0.0) && (may.empty() || !may[f]))
+      throw InputError("container: face " + container.faces[f].name +
+                       " bounds nothing, since others keep the fluid from it; remove it, or turn its normal");
 }
 
 void check_conditions(const Container& container) {

@@ -3,6 +3,7 @@
 
 #include "geometry/pi.hpp"
 #include "pfv/error.hpp"
+#include "problem/round_meshes.hpp"
 #include "text/number_text.hpp"
 
 #include <Eigen/Cholesky>
@@ -119,7 +120,7 @@ std::vector<MeshWall> coplanar_groups(const Triangles& triangles, const Bulk& bu
     if (walls.size() == most_planes)
       throw InputError(what + "has more than " + std::to_string(most_planes) +
                        " planes: it is curved in more than one direction, or too fine for its shape");
-    walls.push_back({Surface::plane(area, triangles[t].col(0)), {t}, 0.0});
+    walls.push_back({Surface::plane(area, triangles[t].col(0)), {t}, 0.0, {}});
   }
   join_coplanar(walls, triangles, bulk);
   std::sort(walls.begin(), walls.end(),
@@ -276,10 +277,8 @@ void make_round(std::vector<MeshWall>& walls, const Triangles& triangles) {
   walls = std::move(result);
 }
 
-}  // namespace
-
-std::vector<MeshWall> walls_of_mesh(const Triangles& triangles, RoundMeshes round, const std::string& what) {
-  if (triangles.empty()) throw InputError(what + "has no triangles");
+/// Planes that bound a convex room, or one that is round.
+std::vector<MeshWall> walls_as_they_are(const Triangles& triangles, RoundMeshes round, const std::string& what) {
   const Bulk bulk = bulk_of(triangles);
   std::vector<MeshWall> walls = coplanar_groups(triangles, bulk, what);
   if (walls.empty()) throw InputError(what + "has no area");
@@ -288,7 +287,73 @@ std::vector<MeshWall> walls_of_mesh(const Triangles& triangles, RoundMeshes roun
   return walls;
 }
 
+/// Where a mesh has come to that was at its anchors, as a rigid body.
+Eigen::Isometry3d motion_of(const MeshAnchors& anchors, const Triangles& triangles) {
+  Eigen::Matrix3d places;
+  for (int k = 0; k < 3; ++k) places.col(k) = triangles[anchors.corners[k].first].col(anchors.corners[k].second);
+  const auto frame = [](const Eigen::Matrix3d& corners) {
+    Eigen::Matrix3d axes;
+    axes.col(0) = (corners.col(1) - corners.col(0)).normalized();
+    axes.col(2) = axes.col(0).cross(corners.col(2) - corners.col(0)).normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+    return axes;
+  };
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = frame(places) * frame(anchors.places).transpose();
+  motion.translation() = places.col(0) - motion.linear() * anchors.places.col(0);
+  return motion;
+}
+
+}  // namespace
+
+std::vector<MeshWall> walls_of_mesh(const Triangles& triangles, RoundMeshes round, const std::string& what) {
+  if (triangles.empty()) throw InputError(what + "has no triangles");
+  constexpr std::size_t many = most_faces - 4;
+  try {
+    std::vector<MeshWall> walls = walls_as_they_are(triangles, round, what);
+    if (walls.size() > many)
+      if (std::optional<std::vector<MeshWall>> fewer = walls_of_revolution(triangles, round)) return *std::move(fewer);
+    return walls;
+  } catch (const InputError&) {
+    if (std::optional<std::vector<MeshWall>> around = walls_of_revolution(triangles, round)) return *std::move(around);
+    throw;
+  }
+}
+
+std::vector<Surface> flats_around(const Surface& cylinder, const std::vector<Surface>& beside) {
+  constexpr int equal = 32;  // they conduct 0.6 % more than the cylinder
+  const Vector u = cylinder.axis.unitOrthogonal(), v = cylinder.axis.cross(u);
+  std::vector<double> angles;
+  for (const Surface& plane : beside) {
+    const double along = plane.normal.dot(u), across = plane.normal.dot(v);
+    if (plane.is_plane() && std::hypot(along, across) > squareness) angles.push_back(std::atan2(across, along));
+  }
+  std::sort(angles.begin(), angles.end());
+  angles.erase(std::unique(angles.begin(), angles.end(), [](double a, double b) { return b - a < squareness; }), angles.end());
+  double widest = angles.empty() ? 2.0 * pi : angles.front() + 2.0 * pi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);
+  if (widest > 2.1 * pi / fewest_flats) {
+    angles.clear();
+    for (int k = 0; k < equal; ++k) angles.push_back((2 * k + 1) * pi / equal);
+  }
+  std::vector<Surface> flats;
+  for (const double angle : angles) {
+    const Vector normal = std::cos(angle) * u + std::sin(angle) * v;
+    flats.push_back(Surface::plane(normal, cylinder.point + cylinder.radius * normal));
+  }
+  return flats;
+}
+
 void follow_mesh(MeshWall& wall, const Triangles& triangles, bool several) {
+  if (wall.anchors) {
+    const Eigen::Isometry3d motion = motion_of(*wall.anchors, triangles);
+    const Surface before = wall.surface;
+    wall.surface = before.is_plane() ? Surface::plane(motion.linear() * before.normal, motion * Vector(before.offset * before.normal))
+                                     : Surface::cylinder(motion.linear() * before.axis, motion * before.point, before.radius);
+    for (int k = 0; k < 3; ++k)
+      wall.anchors->places.col(k) = triangles[wall.anchors->corners[k].first].col(wall.anchors->corners[k].second);
+    return;
+  }
   if (!wall.surface.is_plane()) {
     wall.surface = fitted_cylinder(wall.triangles, triangles);
     return;

@@ -79,6 +79,7 @@ std::optional<double> permeability_of(const Container& container, const std::arr
   const double length =
       container.faces[faces[1]].surface.offset + container.faces[faces[0]].surface.offset;
   const double area = face_areas(container)[faces[pressures[0] >= pressures[1] ? 0 : 1]];
+  if (!(area > 0.0)) return {};
   const double rate = 0.5 * (totals.inflow + totals.outflow);
   return viscosity * rate * length / (difference * area);
 }
