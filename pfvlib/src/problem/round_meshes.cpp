@@ -140,23 +140,19 @@ double furthest_corner(const Revolution& revolution, const Triangles& triangles)
   return furthest;
 }
 
-/// Least squares of the corners' distances from a cone in each section, all about one axis: moves the axis, tilts it
-/// and makes the sections' lines meet.
-bool refine(Revolution& revolution, const Triangles& triangles) {
-  const auto sections = static_cast<Eigen::Index>(revolution.profile.size()) - 1;
-  const Vector u = revolution.axis.unitOrthogonal(), v = revolution.axis.cross(u);
-  const Eigen::Index unknowns = 4 + 2 * sections;
+/// Least squares of the corners' distances from a cone in each section, all about one axis: how far it moves and tilts, then
+/// offset and slope of each section's line. Empty where they do not follow from the corners.
+Eigen::VectorXd fit_of(const Revolution& revolution, const Triangles& triangles, const Vector& u, const Vector& v, double size) {
+  const Eigen::Index unknowns = 4 + 2 * (static_cast<Eigen::Index>(revolution.profile.size()) - 1);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns), row = right;
-  const double size = revolution.profile.back()[0] - revolution.profile.front()[0] + revolution.largest();
   for (const int t : revolution.sides) {
     const double middle = revolution.place_of(triangles[t].rowwise().mean())[0];
     const auto section = static_cast<Eigen::Index>(revolution.section_at(middle));
     for (int k = 0; k < 3; ++k) {
       const Place place = revolution.place_of(triangles[t].col(k));
-      const Vector from = triangles[t].col(k) - revolution.point;
       if (!(place[1] > 0.0)) continue;
-      const Vector out = (from - place[0] * revolution.axis) / place[1];
+      const Vector out = (triangles[t].col(k) - revolution.point - place[0] * revolution.axis) / place[1];
       row.setZero();
       row.head<4>() << out.dot(u), out.dot(v), out.dot(u) * place[0] / size, out.dot(v) * place[0] / size;
       row[4 + 2 * section] = 1.0;
@@ -166,8 +162,16 @@ bool refine(Revolution& revolution, const Triangles& triangles) {
     }
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solved(matrix);
-  if (solved.rank() < unknowns) return false;
-  const Eigen::VectorXd fit = solved.solve(right);
+  return solved.rank() < unknowns ? Eigen::VectorXd() : Eigen::VectorXd(solved.solve(right));
+}
+
+/// Moves the axis, tilts it and makes the sections' lines meet.
+bool refine(Revolution& revolution, const Triangles& triangles) {
+  const auto sections = static_cast<Eigen::Index>(revolution.profile.size()) - 1;
+  const Vector u = revolution.axis.unitOrthogonal(), v = revolution.axis.cross(u);
+  const double size = revolution.profile.back()[0] - revolution.profile.front()[0] + revolution.largest();
+  const Eigen::VectorXd fit = fit_of(revolution, triangles, u, v, size);
+  if (fit.size() == 0) return false;
   revolution.point += fit[0] * u + fit[1] * v;
   revolution.axis = (revolution.axis + (fit[2] * u + fit[3] * v) / size).normalized();
   std::vector<Place>& profile = revolution.profile;
