@@ -16,7 +16,7 @@ namespace pfv {
 namespace {
 
 using Vector = Eigen::Vector3d;
-using Place = Eigen::Vector2d;  // along the axis and away from it, m
+using InSection = Eigen::Vector2d;  // along the axis and away from it, m
 using Triangles = std::vector<Triangle>;
 
 // parts of the largest radius
@@ -32,16 +32,16 @@ Vector area_of(const Triangle& t) { return 0.5 * (t.col(1) - t.col(0)).cross(t.c
 struct Revolution {
   Vector axis = Vector::Zero(), point = Vector::Zero();  ///< unit; any point of the axis, m
   std::vector<int> sides, ends;                          ///< triangles
-  std::vector<Place> profile;                            ///< corners, in order along the axis
+  std::vector<InSection> profile;                            ///< corners, in order along the axis
 
-  Place place_of(const Vector& x) const {
+  InSection place_of(const Vector& x) const {
     const Vector from = x - point;
     const double along = axis.dot(from);
     return {along, (from - along * axis).norm()};
   }
   double largest() const {
     double radius = 0.0;
-    for (const Place& corner : profile) radius = std::max(radius, corner[1]);
+    for (const InSection& corner : profile) radius = std::max(radius, corner[1]);
     return radius;
   }
   std::size_t section_at(double along) const {
@@ -51,7 +51,7 @@ struct Revolution {
   }
   double radius_at(double along) const {
     const std::size_t k = section_at(along);
-    const Place way = profile[k + 1] - profile[k];
+    const InSection way = profile[k + 1] - profile[k];
     return way[0] > 0.0 ? profile[k][1] + (along - profile[k][0]) / way[0] * way[1] : profile[k][1];
   }
 };
@@ -87,21 +87,21 @@ bool find_point(Revolution& revolution, const Triangles& triangles) {
   return true;
 }
 
-std::vector<Place> places_of_sides(const Revolution& revolution, const Triangles& triangles) {
-  std::vector<Place> places;
+std::vector<InSection> places_of_sides(const Revolution& revolution, const Triangles& triangles) {
+  std::vector<InSection> places;
   for (const int t : revolution.sides)
     for (int k = 0; k < 3; ++k) places.push_back(revolution.place_of(triangles[t].col(k)));
   return places;
 }
 
-double cross(const Place& a, const Place& b) { return a[0] * b[1] - a[1] * b[0]; }
+double cross(const InSection& a, const InSection& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// The upper hull of the places of all corners: the profile of a convex room.
-std::vector<Place> upper_hull(std::vector<Place> places) {
+std::vector<InSection> upper_hull(std::vector<InSection> places) {
   std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
-  std::vector<Place> hull;
-  for (const Place& place : places) {
+            [](const InSection& a, const InSection& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
+  std::vector<InSection> hull;
+  for (const InSection& place : places) {
     while (hull.size() > 1 && cross(hull.back() - hull[hull.size() - 2], place - hull.back()) >= 0.0) hull.pop_back();
     hull.push_back(place);
   }
@@ -109,10 +109,10 @@ std::vector<Place> upper_hull(std::vector<Place> places) {
 }
 
 /// Keeps the ends, and between them the corner furthest from the line as long as one is further than `allowed`.
-void simplify(const std::vector<Place>& line, std::size_t first, std::size_t last, double allowed, std::vector<Place>& kept) {
+void simplify(const std::vector<InSection>& line, std::size_t first, std::size_t last, double allowed, std::vector<InSection>& kept) {
   double furthest = allowed;
   std::size_t corner = first;
-  const Place way = (line[last] - line[first]).normalized();
+  const InSection way = (line[last] - line[first]).normalized();
   for (std::size_t i = first + 1; i < last; ++i)
     if (const double apart = std::abs(cross(way, line[i] - line[first])); apart > furthest) {
       furthest = apart;
@@ -124,7 +124,7 @@ void simplify(const std::vector<Place>& line, std::size_t first, std::size_t las
 }
 
 bool find_profile(Revolution& revolution, const Triangles& triangles) {
-  const std::vector<Place> hull = upper_hull(places_of_sides(revolution, triangles));
+  const std::vector<InSection> hull = upper_hull(places_of_sides(revolution, triangles));
   if (hull.size() < 2) return false;
   revolution.profile = hull;
   const double radius = revolution.largest();
@@ -135,7 +135,7 @@ bool find_profile(Revolution& revolution, const Triangles& triangles) {
 
 double furthest_corner(const Revolution& revolution, const Triangles& triangles) {
   double furthest = 0.0;
-  for (const Place& place : places_of_sides(revolution, triangles))
+  for (const InSection& place : places_of_sides(revolution, triangles))
     furthest = std::max(furthest, std::abs(place[1] - revolution.radius_at(place[0])));
   return furthest;
 }
@@ -150,7 +150,7 @@ Eigen::VectorXd fit_of(const Revolution& revolution, const Triangles& triangles,
     const double middle = revolution.place_of(triangles[t].rowwise().mean())[0];
     const auto section = static_cast<Eigen::Index>(revolution.section_at(middle));
     for (int k = 0; k < 3; ++k) {
-      const Place place = revolution.place_of(triangles[t].col(k));
+      const InSection place = revolution.place_of(triangles[t].col(k));
       if (!(place[1] > 0.0)) continue;
       const Vector out = (triangles[t].col(k) - revolution.point - place[0] * revolution.axis) / place[1];
       row.setZero();
@@ -174,15 +174,15 @@ bool refine(Revolution& revolution, const Triangles& triangles) {
   if (fit.size() == 0) return false;
   revolution.point += fit[0] * u + fit[1] * v;
   revolution.axis = (revolution.axis + (fit[2] * u + fit[3] * v) / size).normalized();
-  std::vector<Place>& profile = revolution.profile;
-  const auto line = [&](Eigen::Index k) { return Place(fit[4 + 2 * k], fit[5 + 2 * k] / size); };
+  std::vector<InSection>& profile = revolution.profile;
+  const auto line = [&](Eigen::Index k) { return InSection(fit[4 + 2 * k], fit[5 + 2 * k] / size); };
   for (Eigen::Index k = 0; k + 1 < sections; ++k) {
-    const Place a = line(k), b = line(k + 1);
+    const InSection a = line(k), b = line(k + 1);
     if (!(a[1] > b[1])) return false;
     profile[k + 1][0] = (b[0] - a[0]) / (a[1] - b[1]);
   }
   for (Eigen::Index k = 0; k <= sections; ++k) {
-    const Place a = line(std::min(k, sections - 1));
+    const InSection a = line(std::min(k, sections - 1));
     profile[k][1] = a[0] + a[1] * profile[k][0];
     if (k > 0 && !(profile[k][0] > profile[k - 1][0])) return false;
   }
@@ -193,8 +193,8 @@ bool discs_are_at_its_ends(const Revolution& revolution, const Triangles& triang
   const double allowed = corners_stray * revolution.largest();
   return std::all_of(revolution.ends.begin(), revolution.ends.end(), [&](int t) {
     for (int k = 0; k < 3; ++k) {
-      const Place place = revolution.place_of(triangles[t].col(k));
-      const Place &low = revolution.profile.front(), &high = revolution.profile.back();
+      const InSection place = revolution.place_of(triangles[t].col(k));
+      const InSection &low = revolution.profile.front(), &high = revolution.profile.back();
       const bool at_low = std::abs(place[0] - low[0]) < allowed && place[1] < low[1] + allowed;
       const bool at_high = std::abs(place[0] - high[0]) < allowed && place[1] < high[1] + allowed;
       if (!at_low && !at_high) return false;
@@ -207,7 +207,7 @@ bool discs_are_at_its_ends(const Revolution& revolution, const Triangles& triang
 double mean_depth(const Revolution& revolution, const Triangles& triangles) {
   double sum = 0.0, areas = 0.0;
   for (const int t : revolution.sides) {
-    const Place place = revolution.place_of(triangles[t].rowwise().mean());
+    const InSection place = revolution.place_of(triangles[t].rowwise().mean());
     const double radius = revolution.radius_at(place[0]), area = area_of(triangles[t]).norm();
     if (radius - place[1] > middles_stray * revolution.largest()) return 0.0;
     sum += area * (radius > 0.0 ? place[1] / radius : 1.0);
@@ -215,7 +215,7 @@ double mean_depth(const Revolution& revolution, const Triangles& triangles) {
   }
   double surface = 0.0;
   for (std::size_t k = 0; k + 1 < revolution.profile.size(); ++k) {
-    const Place &a = revolution.profile[k], &b = revolution.profile[k + 1];
+    const InSection &a = revolution.profile[k], &b = revolution.profile[k + 1];
     surface += pi * (a[1] + b[1]) * (b - a).norm();
   }
   return areas > whole_turn * surface ? sum / areas : 0.0;
@@ -258,8 +258,8 @@ MeshAnchors anchors_of(const Triangles& triangles) {
 std::vector<Surface> flats_of_section(const Revolution& revolution, std::size_t section, int count, double shrink,
                                       const Vector& start) {
   const double half = pi / count;
-  const Place &a = revolution.profile[section], &b = revolution.profile[section + 1];
-  const Place way(b[0] - a[0], shrink * (b[1] - a[1]));
+  const InSection &a = revolution.profile[section], &b = revolution.profile[section + 1];
+  const InSection way(b[0] - a[0], shrink * (b[1] - a[1]));
   const Vector side = revolution.axis.cross(start);
   std::vector<Surface> flats;
   for (int k = 0; k < count; ++k) {
