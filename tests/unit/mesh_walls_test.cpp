@@ -80,7 +80,8 @@ TEST(MeshWalls, FlatsAroundAnAxisAreTheCylinderOfTheirCrossSection) {
     EXPECT_NEAR(std::abs(shell.axis.dot(somewhere().linear().col(2))), 1.0, 1e-10);
     EXPECT_NEAR(shell.distance(somewhere() * Vector(0.0, 0.0, 0.7)), shell.radius, 1e-6);
     EXPECT_NEAR(walls[0].deviation, shell.radius - 0.25 * std::cos(pi / sides), 0.25 - shell.radius + 1e-6) << sides;
-    EXPECT_EQ(walls_of(mesh, RoundMeshes::as_flats).size(), static_cast<std::size_t>(sides));
+    // more than a container can have become 32
+    EXPECT_EQ(walls_of(mesh, RoundMeshes::as_flats).size(), static_cast<std::size_t>(sides > 60 ? 32 : sides));
   }
 }
 
