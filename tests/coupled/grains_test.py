@@ -122,6 +122,12 @@ class Grains(CoupledTest):
             # 12 mu v L = 0.012 N would hold grains at rest
             self.assertLess(max(abs(f) for force in forces(rows).values() for f in force), 1e-12)
 
+    def test_extent_before_there_are_grains_is_the_side_of_the_simulation_box(self):
+        """0.1 by 0.1 between the side planes, from -0.02 to 0.15 along z."""
+        flow = "viscosity 0.01 " + faces(zlo="extent pressure 1", zhi="extent pressure 0")
+        screen = self.liggghts(f"include in.packing\ngroup nobody id 999\nfix flow nobody pfv {flow}\nrun 0\n")
+        self.assertIn("flow box of 0.0017 m3, no grains yet", screen)
+
 
 if __name__ == "__main__":
     unittest.main()

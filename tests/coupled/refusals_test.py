@@ -199,11 +199,6 @@ class Refusals(CoupledTest):
             "variable g equal 9.81*(1+step)\nfix g all gravity v_g vector 0 0 -1\n"),
             after="run 2\n")
 
-    def test_extent_without_grains(self):
-        flow = "viscosity 0.01 " + faces(zlo="extent pressure 1", zhi="extent pressure 0")
-        self.refused("include in.packing\ngroup nobody id 999\n"
-                     f"fix flow nobody pfv {flow}\nrun 0\n", "zlo", "extent")
-
 
 if __name__ == "__main__":
     unittest.main()
