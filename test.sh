@@ -61,6 +61,7 @@ if [ "${1:-}" = long ]; then
   /usr/bin/python3 "$root/tests/hosts/test_hosts.py" -v
   PFV_COMMAND=$root/build/bin/pfv PYTHONPATH=$root/build/python /usr/bin/python3 "$root/tests/python/test_notebooks.py" --nbclient
   "$root/doc/accuracy.py"
+  "$root/doc/containers.py"
   "$root/doc/periodic.py"
   "$root/doc/error_vs_time.py" solvers thresholds coupling coupling_5000 sizes models scaling
   "$root/doc/scaling.py" million

@@ -83,8 +83,9 @@ void PfvFaceSources::fail(int number, const std::string& what) const {
 
 Fix* PfvFaceSources::find_fix(int number, const std::string& id) const {
   const int index = modify->find_fix(id.c_str());
-  if (index < 0) fail(number, "there is no fix '" + id + "'; define it before this fix, or give the face a plane where a gate of the "
-                         "script goes away");
+  if (index < 0)
+    fail(number, "there is no fix '" + id + "'; define it before this fix, or give the face a plane where a gate of the "
+                 "script goes away");
   return modify->fix[index];
 }
 

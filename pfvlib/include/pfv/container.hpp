@@ -86,7 +86,8 @@ struct Container {
 /// Most faces that a container may have.
 inline constexpr int most_faces = 64;
 
-/// Of these faces, with `lower` and `upper` filled in. Throws InputError as `check` does.
+/// Of these faces, with `lower` and `upper` filled in. Throws InputError as `check` does. A face whose normal points the
+/// wrong way may bound nothing without a word: `refuse_idle_faces` tells (`pfv/idle_faces.hpp`).
 Container container_of(std::vector<ContainerFace> faces);
 /// Fills in `lower` and `upper`; a box keeps its own. Cost: faces².
 void find_bounds(Container& container);

@@ -32,7 +32,7 @@ Vector area_of(const Triangle& t) { return 0.5 * (t.col(1) - t.col(0)).cross(t.c
 struct Revolution {
   Vector axis = Vector::Zero(), point = Vector::Zero();  ///< unit; any point of the axis, m
   std::vector<int> sides, ends;                          ///< triangles
-  std::vector<InSection> profile;                            ///< corners, in order along the axis
+  std::vector<InSection> profile;                        ///< corners, in order along the axis
 
   InSection place_of(const Vector& x) const {
     const Vector from = x - point;
