@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # `cpack -G DEB` in a build folder: pfv, libpfv-dev, python3-pfv and liggghts-pfv, of what is built there.
 set(CPACK_PACKAGE_NAME pfv)
-set(CPACK_PACKAGE_CONTACT "The pfv developers <pfv@localhost>")
+# who answers for the packages: as Debian's own tools are told
+set(CPACK_PACKAGE_CONTACT "The pfv developers <nobody@example.invalid>")
+if(NOT "$ENV{DEBFULLNAME}" STREQUAL "" AND NOT "$ENV{DEBEMAIL}" STREQUAL "")
+  set(CPACK_PACKAGE_CONTACT "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)

@@ -75,7 +75,7 @@ class WithPfv:
         spheres = [body for body in O.bodies if isinstance(body.shape, Sphere)]
         bounds = [[O.bodies[walls[2 * k + end]].state.pos[k] for end in (0, 1)] for k in range(3)]
         return pfv.permeability([body.state.pos for body in spheres], [body.shape.radius for body in spheres], bounds,
-                                axis="y", **self.settings)
+                                axis="y", wall="symmetry", **self.settings)
 
     def begin(self, walls):
         global fluid

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve_arguments.hpp"
 
+#include "box_arguments.hpp"
 #include "face_arguments.hpp"
 #include "io/atomic_file.hpp"
 #include "numbers.hpp"
@@ -54,10 +55,10 @@ void add_packing_options(CLI::App& command, SolveArguments& arguments, const std
       ->option_text("m|cm|mm|um|METRES")->group(group);
   command.add_flag("--at-rest", arguments.at_rest, "leave the velocities of the file out (default: taken)")->group(group);
   command.add_option("--box", arguments.box,
-                     "flow box, m, or `auto`: the extent of the spheres (required, or\n"
-                     "--container; without both, a dump that is periodic all around\n"
-                     "gives its own)")
-      ->expected(1, 6)->option_text("XLO XHI YLO YHI ZLO ZHI|auto")->group(group);
+                     "flow box, m; `dump`: the simulation box that the file states;\n"
+                     "`auto`: the extent of the spheres (required, or --container;\n"
+                     "without both, a dump that is periodic all around gives its own)")
+      ->expected(1, 6)->option_text("XLO XHI YLO YHI ZLO ZHI|dump|auto")->group(group);
   command.add_option("--container", arguments.container,
                      "planes at any angle, or a cylinder between two (doc/container.md):\n"
                      "{\"planes\": [{\"name\", \"inward_normal\": [x,y,z], \"offset\"}, ...],\n"
@@ -130,104 +131,11 @@ double length_unit_of(const std::string& text) {
 
 namespace {
 
-bool box_is_auto(const SolveArguments& arguments) { return arguments.box == std::vector<std::string>{"auto"}; }
-
-bool periodic_as_dump(const SolveArguments& arguments) {
-  return arguments.periodic == std::vector<std::string>{"dump"};
-}
-
-PackingFile read_file(const SolveArguments& arguments) {
-  return read_packing_file(arguments.packing, {arguments.snapshot, length_unit_of(arguments.length_unit)});
-}
-
-/// Reads the packing file beforehand where the box may be in it; without a box, a container and periodic axes, a dump that
-/// is periodic all around gives its own.
-void look_for_box(SolveArguments& arguments) {
-  const bool none = arguments.box.empty() && !arguments.container && arguments.periodic.empty();
-  if (!none && !box_is_auto(arguments) && !periodic_as_dump(arguments)) return;
-  arguments.file = std::make_shared<PackingFile>(read_file(arguments));
-  const std::optional<PackingBounds>& bounds = arguments.file->bounds;
-  if (none && bounds && bounds->periodic[0] && bounds->periodic[1] && bounds->periodic[2]) arguments.periodic = {"dump"};
-}
-
-/// Along the periodic axes of the dump its own bounds, which --box must not contradict.
-void apply_dump(const SolveArguments& arguments, Box& box) {
-  const std::optional<PackingBounds>& dumped = arguments.file->bounds;
-  if (!dumped || !dumped->any_periodic())
-    throw InputError("--periodic dump: " + detail::quoted(arguments.packing) +
-                     " is no dump of a simulation box with periodic sides (BOX BOUNDS pp ...): name the axes");
-  box.tilt = dumped->tilt;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::string name(1, "xyz"[axis]);
-    if (!dumped->periodic[axis]) {
-      if (arguments.box.empty())
-        throw InputError("--periodic dump: the simulation box is not periodic along " + name +
-                         ": give the flow's bounds there with --box");
-      continue;
-    }
-    const double length = dumped->upper[axis] - dumped->lower[axis];
-    const auto differ = [&](double a, double b) { return !(std::abs(a - b) <= 1e-9 * length); };
-    if (!arguments.box.empty() && !box_is_auto(arguments) &&
-        (differ(box.lower[axis], dumped->lower[axis]) || differ(box.upper[axis], dumped->upper[axis])))
-      throw InputError("--box: along " + name + ", which is periodic in the dump, its bounds are " +
-                       detail::number_text(dumped->lower[axis]) + " " + detail::number_text(dumped->upper[axis]) +
-                       ": give these, or name the periodic axes yourself");
-    box.lower[axis] = dumped->lower[axis];
-    box.upper[axis] = dumped->upper[axis];
-    box.periodic[axis] = true;
-  }
-}
-
-/// "x", "x,y", "z,x,y": the axes along which the packing repeats.
-void apply_periodic(const SolveArguments& arguments, Box& box) {
-  const bool of_dump = periodic_as_dump(arguments);
-  if (of_dump) apply_dump(arguments, box);
-  if (of_dump && !arguments.tilt.empty()) throw InputError("--tilt: the cell is that of the dump, with its tilt: leave it away");
-  for (std::size_t k = 0; k < arguments.tilt.size(); ++k)
-    box.tilt[static_cast<Eigen::Index>(k)] = number("--tilt", arguments.tilt[k]);
-  for (const std::string& axis : of_dump ? std::vector<std::string>{} : arguments.periodic) {
-    if (axis != "x" && axis != "y" && axis != "z")
-      throw InputError("--periodic: unknown axis " + detail::quoted(axis) +
-                       ": give some of x, y, z, with commas between them, or dump alone");
-    bool& periodic = box.periodic[axis[0] - 'x'];
-    if (periodic) throw InputError("--periodic: axis " + axis + " occurs twice");
-    if (box_is_auto(arguments))
-      throw InputError("--periodic: the extent of the spheres is no period: give the cell with --box");
-    periodic = true;
-  }
-  for (std::size_t axis = 0; axis < arguments.gradient.size(); ++axis)
-    box.pressure_gradient[static_cast<int>(axis)] = number("--gradient", arguments.gradient[axis]);
-}
-
-void apply_extent_of_spheres(const SolveArguments& arguments, Box& box) {
-  const PackingArrays& packing = arguments.file->packing;
-  const Eigen::Matrix3Xd reach = packing.radii.transpose().replicate(3, 1);
-  box.lower = (packing.positions - reach).rowwise().minCoeff();
-  box.upper = (packing.positions + reach).rowwise().maxCoeff();
-}
-
-/// The six planes of --box.
-Box box_of(const SolveArguments& arguments) {
-  Box box;
-  if (box_is_auto(arguments)) {
-    apply_extent_of_spheres(arguments, box);
-  } else if (!arguments.box.empty()) {
-    if (arguments.box.size() != 6) throw InputError("--box: give six numbers, or auto: see pfv solve --help");
-    for (int axis = 0; axis < 3; ++axis) {
-      box.lower[axis] = number("--box", arguments.box[2 * axis]);
-      box.upper[axis] = number("--box", arguments.box[2 * axis + 1]);
-    }
-  }
-  apply_periodic(arguments, box);
-  check(box);
-  return box;
-}
-
 Container container_of(const SolveArguments& arguments) {
   const bool has_box = !arguments.box.empty() || periodic_as_dump(arguments);
-  if (arguments.container.has_value() == has_box)
-    throw InputError(arguments.container ? "--box and --container exclude each other: give one of them"
-                                         : "--box or --container is required: see pfv solve --help");
+  if (arguments.container && has_box)
+    throw InputError("--box and --container exclude each other: give one of them");
+  if (!arguments.container && !has_box) refuse_without_box(arguments);
   if (arguments.container && (!arguments.periodic.empty() || !arguments.gradient.empty() || !arguments.tilt.empty()))
     throw InputError("--periodic, --tilt and --gradient need a --box");
   Container container = arguments.container ? read_container(*arguments.container) : Container(box_of(arguments));
@@ -390,7 +298,7 @@ SolveRequest request_of(const SolveArguments& given) {
   SolveArguments arguments = given;
   SolveRequest request;
   look_for_box(arguments);
-  request.box_of_file = arguments.box.empty() || box_is_auto(arguments);
+  request.box_of_file = box_of_file(arguments);
   request.packing = arguments.packing;
   request.choice = {arguments.snapshot, length_unit_of(arguments.length_unit)};
   request.at_rest = arguments.at_rest;

@@ -168,11 +168,7 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Dea
   if (!request.vtk) return;
   if (ranks) write_fields(*request.vtk, flow.fields(), *ranks);
   else write_fields(*request.vtk, flow.fields());
-  if (const auto walls = walls_beside(*request.vtk)) by_one([&] {
-    const FieldGrid drawn = grid_of_walls(flow.container(), report.faces);
-    if (!drawn.types.empty()) write_fields(*walls, drawn);
-    else detail::remove_file(*walls);  // an older one would be taken for this run's
-  });
+  by_one([&] { write_walls_beside(*request.vtk, flow.container(), report.faces); });
 }
 
 /// The tensor stands in the report; without a gradient its error is worth a line all the same.

@@ -6,6 +6,7 @@
 #include "network_class.hpp"
 
 #include "pfv/fields.hpp"
+#include "pfv/io.hpp"
 
 #include <pybind11/stl.h>
 #include <string>
@@ -25,7 +26,7 @@ int axis_of(py::handle given) {
 
 py::array sphere_strains_of(FlowHost& host, py::handle now, py::handle before, py::object edges, py::object tilt) {
   const auto places_now = rows_of_three(now, "now"), places_before = rows_of_three(before, "before");
-  Displaced moved{columns_of(places_now), columns_of(places_before)};
+  Displaced moved{columns_of(places_now), columns_of(places_before), {}, {}};
   if (!edges.is_none()) moved.edges_before = vector_of(edges, "edges_before");
   if (!tilt.is_none()) moved.tilt_before = vector_of(tilt, "tilt_before");
   return array_of(host.ask_of<Flow>([&moved](Flow& flow) { return flow.sphere_strains(moved); }));
@@ -205,8 +206,13 @@ void add_fields(py::class_<FlowHost>& flow) {
 points (n x 3, m), connectivity, ends, types (VTK's numbers of cells), of_points and of_cells: {name: values}.)");
   flow.def("write_fields", [](FlowHost& host, py::object given) {
              const std::string path = path_of(given);
-             host.ask([&path](FlowModel& model) { write_fields(path, model.fields()); });
-           }, "path"_a, "The same as a .vtu file for ParaView, as `pfv solve --vtk` writes it. Raises FileError.");
+             host.ask([&path](FlowModel& model) {
+               write_fields(path, model.fields());
+               write_walls_beside(path, model.container(), model.report().faces);
+             });
+           }, "path"_a, R"(The same as a .vtu file for ParaView, as `pfv solve --vtk` writes it.
+
+The walls with their loads go to FILE_walls.vtu beside FILE.vtu. Raises FileError.)");
 }
 
 }  // namespace

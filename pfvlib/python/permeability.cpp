@@ -12,11 +12,11 @@ namespace {
 
 using namespace py::literals;
 
-/// The sides let fluid slide along; a fall of 1 Pa drives it along the axis.
-Box sample(py::handle bounds, const std::string& axis, const std::string& periodic) {
+/// A fall of 1 Pa drives fluid along the axis.
+Box sample(py::handle bounds, const std::string& axis, const std::string& wall, const std::string& periodic) {
   if (axis != "x" && axis != "y" && axis != "z")
     throw InputError("there is no axis '" + axis + "': give x, y or z");
-  Box box = make_box(bounds, name_of(Wall::symmetry), py::str(periodic));
+  Box box = make_box(bounds, wall, py::str(periodic));
   const int along = axis[0] - 'x';
   if (box.periodic[static_cast<std::size_t>(along)]) {
     box.pressure_gradient[along] = -1.0 / (box.upper[along] - box.lower[along]);
@@ -43,14 +43,14 @@ void warn_of(const Report& report) {
 }
 
 double permeability(py::object positions, py::object radii, py::object box, const std::string& axis,
-                    const std::string& periodic, py::object ids, const py::kwargs& keywords) {
+                    const std::string& periodic, const std::string& wall, py::object ids, const py::kwargs& keywords) {
   const Grains grains({positions, radii, py::none(), py::none(), ids, py::none(), py::none()});
   Settings settings;
   settings.options.forces = false;
   read_keywords("permeability()", keywords, all_keywords(), settings);
   settle(settings);
   check(settings);
-  const Report report = report_of(sample(box, axis, periodic), settings, grains.packing());
+  const Report report = report_of(sample(box, axis, wall, periodic), settings, grains.packing());
   if (!report.permeability)
     throw InputError("no permeability in this box: it takes an incompressible fluid, grains at rest and a fall of "
                      "pressure along one axis");
@@ -68,16 +68,18 @@ void add_permeability(py::module_& module) {
 positions: N x 3, m; radii: N, m
 box: [[xlo, xhi], [ylo, yhi], [zlo, zhi]], m
 axis: of the fall of pressure
-periodic: axes along which the packing repeats, "xy" for instance; the other sides let fluid slide along
+periodic: axes along which the packing repeats, "xy" for instance
+wall: of the other sides: "no_slip", the walls of a container; "symmetry", cuts through a wider bed, whose spheres
+    reach over them. What it does to the result: doc/user_guide.md
 ids: N whole numbers, unique, which errors name (None: the numbers of the rows, from 0)
 
-It is what `pfv solve --wall symmetry --face zlo:pressure=1 --face zhi:pressure=0` reports, to the last digit; for
+It is what `pfv solve --face zlo:pressure=1 --face zhi:pressure=0` reports, to the last digit; for
 its estimated error take `Flow.report()["permeability_error"]`. Warns (AccuracyWarning) where that may not hold.
 Cost: a network, its factor, one solve. Raises InputError with the ids of the spheres, SolverError, TypeError for an
 unknown keyword. Keywords, as for Flow:
 )" + help_of(all_keywords());
   module.def("permeability", &permeability, doc.c_str(), "positions"_a, "radii"_a, "box"_a, py::kw_only(),
-             "axis"_a = "z", "periodic"_a = "", "ids"_a = py::none());
+             "axis"_a = "z", "periodic"_a = "", "wall"_a = name_of(Wall::no_slip), "ids"_a = py::none());
 }
 
 }  // namespace pfv::python

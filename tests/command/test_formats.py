@@ -126,6 +126,25 @@ class Formats(CommandTest):
         refused = self.run_pfv("solve", "--packing", "grains.dump", "--viscosity", "1")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("--box or --container is required", refused.stderr)
+        self.assertIn("--box dump (the simulation box of the file, 0 1 0 1 0 1)", refused.stderr)
+        extent = " ".join(f"{float(bound):.6g}" for bound in box)
+        self.assertIn(f"--box auto (the extent of the spheres, {extent})", refused.stderr)
+
+    def test_the_simulation_box_of_the_dump(self):
+        self.dump([0])
+        self.solve("--forces", "given.csv", *THROUGH_FLOW, packing="grains.dump")
+        said = self.solve("--forces", "dump.csv", *THROUGH_FLOW, packing="grains.dump", box=["--box", "dump"])
+        self.assertEqual(self.read("given.csv"), self.read("dump.csv"))
+        self.assertIn("the flow box was taken from it: 0 1 0 1 0 1\n", said.stderr)
+        shrunk = self.write("shrunk.dump", self.read("grains.dump").replace(b"ff ff ff", b"ff ff fs"))
+        tilted = self.write("tilted.dump", self.read("grains.dump").replace(
+            b"BOX BOUNDS ff ff ff\n0 1.0\n0 1.0\n0 1.0", b"BOX BOUNDS xy xz yz pp pp ff\n0 1.1 0.1\n0 1 0\n0 1 0"))
+        for packing, cause in ((shrunk, "along z the simulation box follows the grains"), (tilted, "is tilted"),
+                               (DENSE, "states no simulation box")):
+            refused = self.run_pfv("solve", "--packing", packing, "--box", "dump", *THROUGH_FLOW)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("--box dump: ", refused.stderr)
+            self.assertIn(cause, refused.stderr)
 
     def test_millimetres(self):
         self.dump([0], 1000.0)

@@ -49,6 +49,8 @@ class Notebooks(unittest.TestCase):
         printed, names = run("permeability.ipynb")
         self.assertRegex(printed, r"K = \S+ m2, Stokes flow between")
         self.assertAlmostEqual(names["k"] / names["permeability"]["z"], 1, delta=1e-9)
+        self.assertAlmostEqual(names["middle"][1] / names["middle"][0], 1, delta=0.01)
+        self.assertLess(names["middle"][0], names["k"])
 
     def test_consolidation(self):
         _, names = run("consolidation.ipynb")

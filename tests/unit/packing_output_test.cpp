@@ -99,7 +99,7 @@ TEST_F(PackingOutputs, DataFileHoldsBoundsButNoPeriodicSides) {
     EXPECT_EQ(read.bounds->lower, two().bounds->lower);
     EXPECT_EQ(read.bounds->upper, two().bounds->upper);
     EXPECT_EQ(remarks_, (Remarks{step_lost, "lost: which sides of the simulation box are periodic; `boundary` of the script says so",
-                                 "assumed: a density of 2500 kg/m3, which --density changes"}));
+                                 "assumed: a density of 2500 kg/m3, which the option density changes"}));
   }
 }
 

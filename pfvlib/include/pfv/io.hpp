@@ -13,8 +13,8 @@
 
 namespace pfv {
 
-/// The spheres of a file in any format that `read_packing_file` takes; of a dump, the last snapshot. Throws InputError
-/// naming file, line and field.
+/// The spheres of a file in any format that `read_packing_file` takes; of a dump, the last snapshot. What was assumed
+/// in reading, `read_packing_file` says, too. Throws InputError naming file, line and field.
 PackingArrays read_packing(const std::string& path);
 
 /// Reads a container: JSON {"planes": [{"name", "inward_normal": [x, y, z], "offset"}, ...], "cylinders": [{"name",
@@ -58,6 +58,9 @@ FieldGrid grid_of_walls(const Container& container, const std::vector<FaceResult
 
 /// FILE_walls.vtu for FILE.vtu or FILE.pvtu; absent for any other name (a device, a pipe).
 std::optional<std::string> walls_beside(const std::string& path);
+/// Writes `grid_of_walls` beside the fields of the pores, where they have such a name. Of a cell without walls an older file
+/// is removed, which would be taken for that of these fields.
+void write_walls_beside(const std::string& path, const Container& container, const std::vector<FaceResult>& results = {});
 
 /// The spheres and places that an error is about as points of a .vtu: id (-1 for a place) and radius (0).
 void write_culprits(const std::string& path, const Packing& packing, const Culprits& culprits);

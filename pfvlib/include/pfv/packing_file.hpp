@@ -18,9 +18,13 @@ struct PackingBounds {
   Eigen::Vector3d lower, upper;
   std::array<bool, 3> periodic{false, false, false};
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  ///< xy, xz, yz of a tilted box (Box::tilt)
+  std::array<bool, 3> follows_grains{false, false, false};  ///< a side that shrinks to them (boundary s)
 
   bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
 };
+
+/// The smallest box that holds the spheres, without periodic sides. Throws InputError where there is none.
+PackingBounds extent_of(const PackingArrays& packing);
 
 /// What a file of spheres holds.
 struct PackingFile {
@@ -66,6 +70,7 @@ struct Names<PackingFormat> {
                                                             {PackingFormat::vtu, "vtu"}}};
 };
 
+/// How spheres are written.
 struct PackingOutput {
   std::optional<PackingFormat> format;  ///< absent: that of the file's ending
   std::optional<double> density;        ///< of the grains, kg/m³, in a data file; absent: 2500, which is remarked
@@ -77,7 +82,7 @@ PackingFormat packing_format_of(const std::string& path);
 
 /// Writes spheres so that `read_packing_file` gives the same numbers bit by bit, as far as the format holds them.
 /// Returns what it does not hold and what was assumed, a sentence each. The file is whole or absent. Throws InputError
-/// for an ending without a format or a folder that is not there, FileError where it cannot be written.
+/// for spheres that are none, an ending without a format or a folder that is not there, FileError where it cannot be written.
 std::vector<std::string> write_packing_file(const std::string& path, const PackingFile& file,
                                             const PackingOutput& output = {});
 

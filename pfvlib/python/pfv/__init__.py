@@ -12,9 +12,10 @@
 SI units throughout; arrays have a row for each sphere, pore or throat. An array of float64 in C order is
 read where it stands; others are copied. `pfv.settings()` lists the keywords of Flow.
 """
-from ._errors import AccuracyWarning, Error, FileError, InputError, SolverError
+from ._errors import AccuracyWarning, Error, FileError, InputError, PackingWarning, SolverError
 from ._pfv import (Box, Flow, Fluid, Network, Packing, RigidBody, __version__, citation, dense_packing, permeability,
-                   read_packing, settings)
+                   read_packing, settings, write_packing)
 
 __all__ = ["AccuracyWarning", "Box", "Error", "FileError", "Flow", "Fluid", "InputError", "Network",
-           "Packing", "RigidBody", "SolverError", "citation", "dense_packing", "permeability", "read_packing", "settings"]
+           "Packing", "PackingWarning", "RigidBody", "SolverError", "citation", "dense_packing", "permeability",
+           "read_packing", "settings", "write_packing"]

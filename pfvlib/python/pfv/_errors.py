@@ -29,6 +29,10 @@ class AccuracyWarning(UserWarning):
     """The estimated error of a permeability may not hold."""
 
 
-for _class in (Error, InputError, SolverError, FileError, AccuracyWarning):
+class PackingWarning(UserWarning):
+    """Something was assumed in reading a file of spheres."""
+
+
+for _class in (Error, InputError, SolverError, FileError, AccuracyWarning, PackingWarning):
     _class.__module__ = "pfv"
 del _class

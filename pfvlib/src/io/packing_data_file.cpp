@@ -121,7 +121,9 @@ PackingFile read_data_file(const std::string& path, std::string_view text) {
   });
   PackingFile file;
   file.packing = table->arrays(path);
-  if (!header.tilted) file.bounds = header.bounds;  // a tilted box whose periodic sides are not known is no room
+  const bool has_room = (header.bounds.upper.array() > header.bounds.lower.array()).all();
+  // a tilted box whose periodic sides are not known is no room
+  if (has_room && !header.tilted) file.bounds = header.bounds;
   while (lines.next_filled())
     if (starts_with(lines.line(), "Velocities")) read_velocities(lines, file.packing);
   if (text.back() != '\n') lines.fail("the file ends inside this line: its last number may be cut off");

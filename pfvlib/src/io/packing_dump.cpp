@@ -111,7 +111,11 @@ std::optional<PackingBounds> read_bounds(TextLines& lines) {
   if (words.size() > 3 && words[3] == "abc")
     lines.fail("the bounds are those of a general triclinic cell: write the dump with triclinic/general no");
   if (words.size() >= 6)
-    for (int axis = 0; axis < 3; ++axis) bounds.periodic[axis] = words[words.size() - 3 + axis] == "pp";
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view sides = words[words.size() - 3 + axis];
+      bounds.periodic[axis] = sides == "pp";
+      bounds.follows_grains[axis] = sides.find('s') != std::string_view::npos;
+    }
   for (int axis = 0; axis < 3; ++axis) {
     if (!lines.next()) fail_cut_off(lines, "in its bounds");
     split_words(lines.line(), fields);

@@ -129,6 +129,12 @@ PackingFile read_packing_file(const std::string& path, const PackingChoice& choi
   return file;
 }
 
+PackingBounds extent_of(const PackingArrays& packing) {
+  if (packing.ids.size() == 0) throw InputError("the extent of no sphere at all is asked for: give bounds");
+  const Eigen::Matrix3Xd reach = packing.radii.transpose().replicate(3, 1);
+  return {(packing.positions - reach).rowwise().minCoeff(), (packing.positions + reach).rowwise().maxCoeff(), {}};
+}
+
 PackingArrays read_packing(const std::string& path) { return read_packing_file(path).packing; }
 
 }  // namespace pfv

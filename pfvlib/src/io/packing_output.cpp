@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Spheres in the formats that others read.
 #include "io/atomic_file.hpp"
+#include "network/grains.hpp"
 #include "pfv/error.hpp"
 #include "pfv/fields.hpp"
 #include "pfv/io.hpp"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace pfv {
 namespace {
@@ -48,9 +50,7 @@ void say_lost_bounds(const PackingFile& file, Remarks& remarks) {
 PackingBounds bounds_of(const PackingFile& file, Remarks& remarks) {
   if (file.bounds) return *file.bounds;
   remarks.push_back("assumed: a simulation box of the extent of the spheres, without periodic sides");
-  const PackingArrays& packing = file.packing;
-  const Eigen::Matrix3Xd reach = packing.radii.transpose().replicate(3, 1);
-  return {(packing.positions - reach).rowwise().minCoeff(), (packing.positions + reach).rowwise().maxCoeff(), {}};
+  return extent_of(file.packing);
 }
 
 /// A header and a line a sphere, as tables and dumps have them.
@@ -108,7 +108,7 @@ std::string dump_of(const PackingFile& file, Remarks& remarks) {
 std::string data_header(const PackingFile& file, Remarks& remarks) {
   const PackingBounds bounds = bounds_of(file, remarks);
   if (bounds.any_periodic()) remarks.push_back("lost: which sides of the simulation box are periodic; `boundary` of the script says so");
-  std::string text = "spheres, written by pfv convert\n\n" + std::to_string(file.packing.ids.size()) +
+  std::string text = "spheres, written by pfv\n\n" + std::to_string(file.packing.ids.size()) +
                      " atoms\n1 atom types\n\n";
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
@@ -125,7 +125,7 @@ std::string data_header(const PackingFile& file, Remarks& remarks) {
 std::string data_of(const PackingFile& file, const std::optional<double>& density, Remarks& remarks) {
   const PackingArrays& packing = file.packing;
   std::string text = data_header(file, remarks) + "\nAtoms\n\n";
-  if (!density) remarks.push_back("assumed: a density of 2500 kg/m3, which --density changes");
+  if (!density) remarks.push_back("assumed: a density of 2500 kg/m3, which the option density changes");
   for (Eigen::Index k = 0; k < packing.ids.size(); ++k) {
     text += std::to_string(packing.ids[k]) + " 1";
     append_words(text, ' ', {2.0 * packing.radii[k], density.value_or(usual_density)});
@@ -189,16 +189,19 @@ PackingFormat packing_format_of(const std::string& path) {
     known += (known.empty() ? "." : ", .") + std::string(one.name);
   }
   throw InputError("output " + detail::quoted(path) + ": its ending names no format of spheres: there are " + known +
-                   "; or say which with --format");
+                   "; or say which with --format, in Python format=");
 }
 
 Remarks write_packing_file(const std::string& path, const PackingFile& file, const PackingOutput& output) {
   const PackingFormat format = output.format ? *output.format : packing_format_of(path);
   require_folder_of(path);
+  check_spheres(file.packing.view());
+  if (output.density && !(*output.density > 0.0 && std::isfinite(*output.density)))
+    throw InputError("the density is " + detail::number_text(*output.density) + ": give a positive number, kg/m3");
   Remarks remarks;
   if (output.density && format != PackingFormat::data)
     throw InputError(std::string("only the format data holds a density, and this is ") + name_of(format) +
-                     ": leave --density away");
+                     ": leave the option density away");
   if (file.step.value_or(0) != 0 && format != PackingFormat::dump)
     remarks.push_back("lost: the time step " + std::to_string(*file.step));
   switch (format) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The walls of a container as ParaView draws them.
 #include "geometry/pi.hpp"
+#include "io/atomic_file.hpp"
+#include "pfv/fields.hpp"
 #include "pfv/io.hpp"
 #include "problem/container_geometry.hpp"
 
@@ -143,6 +145,14 @@ std::optional<std::string> walls_beside(const std::string& path) {
   const std::filesystem::path file(path);
   if (file.extension() != ".vtu" && file.extension() != ".pvtu") return {};
   return path.substr(0, path.size() - file.extension().string().size()) + "_walls.vtu";
+}
+
+void write_walls_beside(const std::string& path, const Container& container, const std::vector<FaceResult>& results) {
+  const auto walls = walls_beside(path);
+  if (!walls) return;
+  const FieldGrid drawn = grid_of_walls(container, results);
+  if (drawn.types.empty()) detail::remove_file(*walls);
+  else write_fields(*walls, drawn);
 }
 
 }  // namespace pfv

@@ -81,6 +81,12 @@ void refuse_repeated_ids(const Packing& packing) {
 
 }  // namespace
 
+void check_spheres(const Packing& packing) {
+  check_shapes(packing);
+  check_values(packing);
+  refuse_repeated_ids(packing);
+}
+
 std::string sphere_list(const Packing::Ids& ids, const std::vector<int>& columns) {
   constexpr std::size_t shown = 4;
   std::string text = columns.size() == 1 ? "sphere " : "spheres ";
@@ -167,11 +173,9 @@ bool has_bodies(const Packing& packing) { return (packing.bodies.array() >= 0).a
 }  // namespace
 
 ActiveGrains select_grains(const Packing& packing, const Container& container, OutsideGrains outside) {
-  check_shapes(packing);
-  check_values(packing);
+  check_spheres(packing);
   const double volume = volume_of(container);
   refuse_giants(packing, volume);
-  refuse_repeated_ids(packing);
   if (packing.size() == 0 && outside == OutsideGrains::refuse)
     throw InputError("the packing has no spheres; give at least one");
   ActiveGrains grains;

@@ -20,6 +20,8 @@ struct ActiveGrains {
   std::vector<int> body;  ///< of each grain, -1 for none
 };
 
+/// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0, repeated ids.
+void check_spheres(const Packing& packing);
 /// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0 or a
 /// thousand times the box, repeated ids, and (OutsideGrains::refuse) a centre that is not inside the
 /// container or no grain at all.

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// --box and --periodic, also as the packing file states them.
+#pragma once
+
+#include "pfv/box.hpp"
+#include "solve_arguments.hpp"
+
+namespace pfv::app {
+
+/// Whether the periodic axes and their bounds are those of the dump.
+bool periodic_as_dump(const SolveArguments& arguments);
+/// Whether the box is the dump's, or the extent of the spheres.
+bool box_of_file(const SolveArguments& arguments);
+
+/// Reads the packing file beforehand where the box may be in it; without a box, a container and periodic axes, a dump
+/// that is periodic all around gives its own.
+void look_for_box(SolveArguments& arguments);
+
+/// The six planes of --box. Throws InputError.
+Box box_of(const SolveArguments& arguments);
+/// Throws InputError with the boxes that could be meant.
+[[noreturn]] void refuse_without_box(const SolveArguments& arguments);
+
+}  // namespace pfv::app
