@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # `cpack -G DEB` in a build folder: pfv, libpfv-dev, python3-pfv and liggghts-pfv, of what is built there.
 set(CPACK_PACKAGE_NAME pfv)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/packages_tools.cmake)
 # who answers for the packages: as Debian's own tools are told
 set(CPACK_PACKAGE_CONTACT "The pfv developers <nobody@example.invalid>")
 if(NOT "$ENV{DEBFULLNAME}" STREQUAL "" AND NOT "$ENV{DEBEMAIL}" STREQUAL "")
@@ -33,6 +34,7 @@ if(PFV_BUILD_COMMAND)
   list(APPEND CPACK_COMPONENTS_ALL command)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME pfv)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "openmpi-bin, python3-pfv")  # mpirun; pictures
   set(CPACK_DEBIAN_COMMAND_DESCRIPTION "Pore-scale finite volume flow through sphere packings: the command")
 endif()
 if(PFV_BUILD_PYTHON)
@@ -50,6 +52,7 @@ if(PFV_BUILD_LIGGGHTS)
   list(APPEND CPACK_COMPONENTS_ALL liggghts)
   set(CPACK_DEBIAN_LIGGGHTS_PACKAGE_NAME liggghts-pfv)
   set(CPACK_DEBIAN_LIGGGHTS_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_LIGGGHTS_PACKAGE_SUGGESTS "openmpi-bin, python3-pfv")
   set(CPACK_DEBIAN_LIGGGHTS_DESCRIPTION "Pore-scale finite volume flow for LIGGGHTS: fix pfv")
 endif()
 include(CPack)

@@ -10,7 +10,13 @@ install_packages() {
       missing+=("$package")
   done < "$root/$list"
   [ ${#missing[@]} -eq 0 ] && return
-  [ "$(id -u)" -eq 0 ] || sudo=sudo
+  if [ "$(id -u)" -ne 0 ]; then
+    sudo=sudo
+    if ! command -v sudo > /dev/null; then
+      echo "packages are missing, and there is no sudo; as root: apt-get install --no-install-recommends ${missing[*]}" >&2
+      return 1
+    fi
+  fi
   echo "installing: ${missing[*]}"
   $sudo apt-get update
   $sudo env DEBIAN_FRONTEND=noninteractive \

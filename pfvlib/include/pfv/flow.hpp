@@ -34,8 +34,8 @@ std::optional<std::string> warning_of(const EmptySpace& empty);
 struct Displaced {
   Eigen::Matrix3Xd now;
   Eigen::Matrix3Xd before;  ///< not finite: the sphere was not there
-  std::optional<Eigen::Vector3d> edges_before;  ///< of a periodic cell, which cannot do without
-  std::optional<Eigen::Vector3d> tilt_before;   ///< likewise, where it is tilted now; else 0
+  std::optional<Eigen::Vector3d> edges_before{};  ///< of a periodic cell, which cannot do without
+  std::optional<Eigen::Vector3d> tilt_before{};   ///< likewise, where it is tilted now; else 0
 };
 
 /// Flow through the pores of a moving packing: the only owner of state, which alone knows what is out of date.

@@ -29,7 +29,8 @@ class Grid:
             reader.Update()
         self.grid = reader.GetOutput()
         if not known or reader.GetErrorCode() or not self.grid.GetNumberOfPoints():
-            raise InputError(f"{path}: is no .vtu file with points: give one of `pfv solve --vtk` or `fix pfv ... output`")
+            raise InputError(f"{path}: is no .vtu file with points: give one of `pfv solve --vtk` or `fix pfv ... output`; "
+                             "`pfv convert` makes one of spheres in another format")
         self.points = vtk_to_numpy(self.grid.GetPoints().GetData())
 
     def names(self):
