@@ -248,6 +248,7 @@ void parse_fields(Words& words, PfvSettings& settings) {
   if (fields.path.size() <= ending.size() ||
       fields.path.compare(fields.path.size() - ending.size(), ending.size(), ending) != 0)
     words.fail("the file's name must end in .pvd, not be '" + fields.path + "'");
+  fields.contact_stress = words.take("contact_stress");
   settings.fields = fields;
 }
 

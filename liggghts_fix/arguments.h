@@ -66,6 +66,7 @@ struct PfvHistoryOutput {
 struct PfvFieldOutput {
   int every;
   std::string path;  ///< ends in .pvd
+  bool contact_stress = false;  ///< with the stresses that contacts and motion cause
 };
 
 /// A mesh that stands among the grains.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fix_pfv.h"
 
+#include "contact_forces.h"
 #include "pfv/darcy_grid.hpp"
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
@@ -35,6 +36,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   everywhere([&] {
     settings_ = parse_pfv(narg - 3, arg + 3, cell_.axes(), units());
     settings_.left_out = PfvFoundWalls(lmp, groupbit).complete(settings_);
+    if (wants_contact_stress()) PfvContactForces(lmp).ask();
   });
   on_root([&] { files_ = std::make_unique<PfvResultFiles>(settings_, true); });
   if (!files_) files_ = std::make_unique<PfvResultFiles>(settings_, false);
@@ -74,6 +76,7 @@ void FixPfv::init() {
     stop(FLERR, "needs run_style verlet");
   check_variables();
   check_other_fixes();
+  check_contact_stress();
   bind_coupling();
   check_cell();
   choose_ranks();
@@ -369,10 +372,11 @@ void FixPfv::advance() {
 }
 
 void FixPfv::after_flow_call() {
+  const Eigen::MatrixXd stresses = stresses_where_due();
   on_flow([&] {
     flow_.forget_report();
     obstacles_.take_loads(grains_, flow_->forces());
-    files_->write(*flow_, grains_.packing(), grains_.unwrapped(), update->ntimestep, ranks_);
+    files_->write(*flow_, {grains_.packing(), grains_.unwrapped(), stresses}, update->ntimestep, ranks_);
     if (files_->history_due(update->ntimestep))
       files_->write_history(history_row(*flow_, flow_.report(), stokes(), update->ntimestep, schedule_.taken()));
   });

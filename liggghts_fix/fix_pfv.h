@@ -85,6 +85,8 @@ class FixPfv : public Fix {
   void check_cell();
   void check_variables();
   void check_other_fixes();
+  bool wants_contact_stress() const { return settings_.fields && settings_.fields->contact_stress; }
+  void check_contact_stress();
 
   // one flow call
   pfv::Container current_container();
@@ -144,6 +146,7 @@ class FixPfv : public Fix {
   double last_quantity(int n);
   pfv::StokesNumbers stokes() const;  ///< of all ranks that hold the flow; collective among these
   void print_phases();
+  Eigen::MatrixXd stresses_where_due();
   void print(const std::string& text);
 
   PfvSettings settings_;

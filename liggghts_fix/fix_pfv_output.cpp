@@ -2,9 +2,14 @@
 // What `fix pfv` answers to thermo output and prints at the end of a run.
 #include "fix_pfv.h"
 
+#include "contact_forces.h"
+
+#include "pfv/error.hpp"
 #include "pfv/io.hpp"
 
 #include "comm.h"
+#include "error.h"
+#include "update.h"
 
 #include <mpi.h>
 #include <cstdio>
@@ -84,6 +89,28 @@ void FixPfv::print_phases() {
   if (!said_.citation && settings_.model == pfv::Model::pores) text += pfv::citation();
   said_.citation = true;
   print(text);
+}
+
+/// What contacts and motion cause in the grains, where files that are to tell of it are due: at their homes. No rows
+/// elsewhere. Collective.
+Eigen::MatrixXd FixPfv::stresses_where_due() {
+  if (!wants_contact_stress()) return {};
+  int due = ranks_.is_first() && files_->fields_due(update->ntimestep);
+  MPI_Bcast(&due, 1, MPI_INT, 0, world);
+  if (!due) return {};
+  std::vector<double> rows;
+  try {
+    rows = PfvContactForces(lmp).rows(groupbit);
+  } catch (const pfv::Error& problem) {
+    error->one(FLERR, problem.what());  // of this rank alone
+  }
+  return grains_.at_homes(rows, PfvContactForces::width);
+}
+
+void FixPfv::check_contact_stress() {
+  if (!wants_contact_stress()) return;
+  const std::string obstacle = PfvContactForces(lmp).obstacle(*this);
+  if (!obstacle.empty()) stop(FLERR, obstacle);
 }
 
 void FixPfv::print(const std::string& text) {

@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
+#include "pfv/grain_stresses.hpp"
 #include "pfv/io.hpp"
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace LAMMPS_NS {
 
@@ -134,9 +136,9 @@ void PfvResultFiles::resume(std::int64_t step, double time, std::vector<PfvWritt
     if (*file) (*file)->resume(step, time);
 }
 
-void PfvResultFiles::write(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                           const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const PfvFlowRanks& ranks) {
-  if (fields_ && field_schedule_.due(step)) write_fields(flow, packing, unwrapped, step, ranks);
+void PfvResultFiles::write(const pfv::FlowModel& flow, const PfvWrittenGrains& grains, std::int64_t step,
+                           const PfvFlowRanks& ranks) {
+  if (fields_ && field_schedule_.due(step)) write_fields(flow, grains, step, ranks);
   if (profile_file_ && profile_file_->due(step)) profile_file_->write_row(profile_row(flow));
   if (flux_file_ && flux_file_->due(step)) flux_file_->write_row(flux_row(flow));
   if (sensor_file_ && sensor_file_->due(step)) sensor_file_->write_row(sensor_row(flow));
@@ -157,8 +159,9 @@ std::string PfvResultFiles::head_of(const std::string& stem, const PfvWrittenSte
   return file_name_of(file_of(stem, one.step, what, ending));
 }
 
-void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                                  const Eigen::Matrix3Xd& unwrapped, std::int64_t step, const PfvFlowRanks& ranks) {
+void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const PfvWrittenGrains& grains, std::int64_t step,
+                                  const PfvFlowRanks& ranks) {
+  const pfv::Packing& packing = grains.packing;
   const std::string stem = fields_->path.substr(0, fields_->path.rfind(".pvd")), fluid = flow.field_name();
   const auto write = [&](const std::string& what, const pfv::FieldGrid& grid) {
     const std::string alone = file_of(stem, step, what, ".vtu"), head = file_of(stem, step, what, ".pvtu");
@@ -172,7 +175,7 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const pfv::Packing
     ranks.take_largest(&last, 1);
     first_ = First{flow.container().upper - flow.container().lower, static_cast<std::int64_t>(last)};
   }
-  write("grains", pfv::grid_of_spheres(packing, flow.forces(), sphere_fields(flow, packing, unwrapped)));
+  write("grains", pfv::grid_of_spheres(packing, flow.forces(), sphere_fields(flow, grains)));
   const std::vector<pfv::FaceResult>& faces = flow.faces();
   written_.push_back({step, flow.time()});
   if (!are_written_) return;
@@ -224,14 +227,30 @@ pfv::Displaced PfvResultFiles::displaced(const pfv::Packing& packing, const Eige
   return moved;
 }
 
-/// Displacements, and what the model with pores knows of each sphere.
-std::vector<pfv::Field> PfvResultFiles::sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                                                      const Eigen::Matrix3Xd& unwrapped) {
-  const Eigen::Matrix3Xd moved = displacements(packing, unwrapped);
+namespace {
+
+/// Of contacts and of motion; 0 for the spheres of obstacles, which stand behind the grains.
+void add_stresses(const PfvWrittenGrains& grains, std::vector<pfv::Field>& fields) {
+  if (grains.stresses.rows() == 0) return;
+  pfv::SphereTensors all = pfv::SphereTensors::Zero(6, grains.packing.size());
+  int row = 0;
+  for (const char* name : {"contact_stress", "inertial_stress"}) {
+    all.leftCols(grains.stresses.cols()) = grains.stresses.middleRows<6>(row);
+    for (pfv::Field& field : pfv::stress_fields(name, all)) fields.push_back(std::move(field));
+    row += 6;
+  }
+}
+
+}  // namespace
+
+/// Displacements, stresses where they are asked for, and what the model with pores knows of each sphere.
+std::vector<pfv::Field> PfvResultFiles::sphere_fields(const pfv::FlowModel& flow, const PfvWrittenGrains& grains) {
+  const Eigen::Matrix3Xd moved = displacements(grains.packing, grains.unwrapped);
   std::vector<pfv::Field> fields{{"displacement", moved}};
+  add_stresses(grains, fields);
   const auto* pores = dynamic_cast<const pfv::Flow*>(&flow);
   if (!pores) return fields;
-  for (auto& more : {pores->sphere_fields(), pores->strain_fields(displaced(packing, unwrapped, moved))})
+  for (auto& more : {pores->sphere_fields(), pores->strain_fields(displaced(grains.packing, grains.unwrapped, moved))})
     fields.insert(fields.end(), more.begin(), more.end());
   return fields;
 }

@@ -32,6 +32,13 @@ class PfvSchedule {
   std::optional<std::int64_t> last_;
 };
 
+/// The grains where the flow has them, as files tell of them.
+struct PfvWrittenGrains {
+  pfv::Packing packing;
+  const Eigen::Matrix3Xd& unwrapped;  ///< places without the wrapping of periodic axes, which displacements take
+  Eigen::MatrixXd stresses;  ///< 12 rows: of contacts, of motion (PfvContactForces::rows); no columns: not asked for
+};
+
 /// One instant of the .pvd collection.
 struct PfvWrittenStep {
   std::int64_t step;
@@ -72,10 +79,10 @@ class PfvResultFiles {
 
   /// Writes what is due after a flow step, at the flow's own time: LIGGGHTS' `time` begins anew at
   /// each restart. Throws pfv::FileError.
-  /// `unwrapped`: positions without the wrapping of periodic axes, which displacements are told from.
   /// `ranks`: those that hold the flow; collective among them.
-  void write(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
-             std::int64_t step, const PfvFlowRanks& ranks);
+  void write(const pfv::FlowModel& flow, const PfvWrittenGrains& grains, std::int64_t step, const PfvFlowRanks& ranks);
+  /// Whether the fields will be written at this step.
+  bool fields_due(std::int64_t step) const { return fields_ && PfvSchedule(field_schedule_).due(step); }
   /// Where these grains were when they were first written, for grains that are dealt anew.
   PfvSnapshot first_places() const;
   void set_first_places(const PfvSnapshot& places);
@@ -83,14 +90,13 @@ class PfvResultFiles {
   void write_history(const PfvNamedRow& row) { history_file_->write_row(row); }
 
  private:
-  void write_fields(const pfv::FlowModel& flow, const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
-                    std::int64_t step, const PfvFlowRanks& ranks);
+  void write_fields(const pfv::FlowModel& flow, const PfvWrittenGrains& grains, std::int64_t step,
+                    const PfvFlowRanks& ranks);
   std::string head_of(const std::string& stem, const PfvWrittenStep& one, const std::string& what) const;
   PfvNamedRow profile_row(const pfv::FlowModel& flow) const;
   PfvNamedRow flux_row(const pfv::FlowModel& flow) const;
   PfvNamedRow sensor_row(const pfv::FlowModel& flow) const;
-  std::vector<pfv::Field> sphere_fields(const pfv::FlowModel& flow, const pfv::Packing& packing,
-                                        const Eigen::Matrix3Xd& unwrapped);
+  std::vector<pfv::Field> sphere_fields(const pfv::FlowModel& flow, const PfvWrittenGrains& grains);
   Eigen::Matrix3Xd displacements(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped);
   pfv::Displaced displaced(const pfv::Packing& packing, const Eigen::Matrix3Xd& unwrapped,
                            const Eigen::Matrix3Xd& displacements) const;

@@ -14,7 +14,7 @@ NOTEBOOKS = ROOT / "doc/notebooks"
 GROUPS = {  # what is not named comes last
     "Use": "README doc/user_guide doc/fix_pfv doc/python doc/settings doc/file_variants doc/container doc/periodic "
            "doc/conventions doc/from_couple_cfd doc/from_flow_engine doc/what_changed",
-    "Method": "doc/method doc/accuracy doc/open_water doc/darcy_grid doc/solvers doc/stability doc/couple_every",
+    "Method": "doc/method doc/accuracy doc/pore_scale doc/open_water doc/darcy_grid doc/solvers doc/stability doc/couple_every",
     "Results": "doc/experiments doc/oedometer doc/waves doc/error_vs_time doc/scaling doc/benchmarks doc/extremes",
     "Notebooks": "doc/notebooks/index",
     "Scenes": "inputs/*",
@@ -28,7 +28,7 @@ def place_of(page):
 
 
 WITH_EQUATIONS = {ROOT / f"doc/{name}.md" for name in (
-    "method", "open_water", "stability", "oedometer", "waves", "experiments", "accuracy", "conventions", "darcy_grid")}
+    "method", "open_water", "stability", "oedometer", "waves", "experiments", "accuracy", "pore_scale", "conventions", "darcy_grid")}
 
 
 class Links:

@@ -12,6 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "common"))
 import numpy as np
 
 import layers
+import micro
 import stress
 import terzaghi
 from plotting import plt, save_figure
@@ -246,6 +247,7 @@ def analyse(base):
     rows = judge(run, figures)
     print_table(run, figures, rows)
     draw(run, figures)
+    figures.update(micro.report(run))
     summary = {**run.figures, **figures, "passed": all(held for *_, held in rows),
                "checks": [{"what": what, "measured": measured, "wanted": wanted, "held": held}
                           for what, measured, wanted, held in rows]}

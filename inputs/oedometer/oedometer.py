@@ -148,6 +148,12 @@ def plan(settings, sample):
             "explicit": explicit}
 
 
+def fields_every(settings, planned):
+    """Steps between two files: a stride or a part or multiple of it, so that one is written where the load comes."""
+    strides = planned["steps"] / settings["FIELDS"] / planned["stride"]
+    return round(strides) * planned["stride"] if strides >= 1 else max(1, round(planned["stride"] * strides))
+
+
 def couple(settings, sample, planned):
     grains, out = settings["N"], settings["OUT"]
     for old in (SCENE / out).parent.glob(Path(out).name + "_[cg]*.txt"):
@@ -161,8 +167,8 @@ def couple(settings, sample, planned):
     if "darcy_grid" not in settings["FIX"].split():  # which has no throats
         variables["words"] += f" retriangulate {settings['RETRIANGULATE']} conductance {settings['LAW']}"
     if settings["FIELDS"]:
-        fields_every = max(1, planned["steps"] // settings["FIELDS"])
-        variables["words"] += f" output {fields_every} {out}.pvd"
+        variables["words"] += f" output {fields_every(settings, planned)} {out}.pvd contact_stress"
+        variables["contacts"] = "yes"
     first, last = sample["step"], planned["rest_to"] + planned["steps"]
     _, cpu = liggghts(SCENE, "in.oedometer", variables, out + "_coupled",
                       Progress("consolidation", first, last, planned["time_step"]))

@@ -18,6 +18,7 @@ void add_network_class(py::module_& module);
 void add_rigid_body_class(py::module_& module);
 void add_flow_class(py::module_& module);
 void add_permeability(py::module_& module);
+void add_grain_stresses(py::module_& module);
 
 /// [[xlo, xhi], [ylo, yhi], [zlo, zhi]], all faces sealed. Throws InputError.
 Box make_box(py::handle bounds, const std::string& wall, py::handle periodic);

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_pfv, module) {
   add_rigid_body_class(module);
   add_flow_class(module);
   add_permeability(module);
+  add_grain_stresses(module);
   module.def("settings", &table_of_settings,
              "The settings that Flow and permeability take as keywords: a list of dicts with name, group, values, "
              "unit, default, models (that read it), help.");

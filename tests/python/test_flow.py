@@ -131,6 +131,21 @@ class Answers(unittest.TestCase):
         np.testing.assert_allclose(drag, drag.transpose(0, 2, 1), rtol=1e-9)
         self.assertTrue((np.linalg.eigvalsh(drag) > 0).all())
 
+    def test_stresses_of_contacts_and_of_motion(self):
+        """A sphere between two plates; and spheres of one velocity, which have no stress but in another frame."""
+        radius, force = 0.5, np.array([[0.0, 0.3, 4.0], [0.0, -0.3, -4.0]])
+        points = np.array([[1.0, 2.0, 2.5], [1.0, 2.0, 3.5]])
+        stress = pfv.contact_stresses([[1.0, 2.0, 3.0], [5.0, 5.0, 5.0]], [radius, radius], [0, 0], points, force)
+        volume = np.pi / 6
+        np.testing.assert_allclose(stress[0], np.array([0, 0, -4.0, 0, 0, -0.15]) / volume, atol=1e-14)
+        np.testing.assert_array_equal(stress[1], np.zeros(6))
+        with self.assertRaises(pfv.InputError):
+            pfv.contact_stresses([[1.0, 2.0, 3.0]], [radius], [1, 0], points, force)
+        places, moving, masses = np.zeros((2, 3)), np.tile([2.0, 0.0, -1.0], (2, 1)), [1.0, 3.0]
+        np.testing.assert_array_equal(pfv.inertial_stresses(places, [radius] * 2, moving, masses), np.zeros((2, 6)))
+        found = pfv.inertial_stresses(places, [radius] * 2, moving, masses, frame=[0, 0, 0])
+        np.testing.assert_allclose(found[1], -3.0 / volume * np.array([4.0, 0, 1.0, 0, -2.0, 0]), rtol=1e-14)
+
     def test_strains_of_an_affine_motion(self):
         stretch = np.array([[-0.1, 0.02, 0], [0, 0.05, 0.04], [0.06, 0, -0.2]])
         now = self.bed.positions

@@ -132,8 +132,9 @@ class Flow final : public FlowModel {
   /// The same as files have it: `strain`, in the order of Field, and `strain_deviator`, sqrt(2/3 e:e) of its part e
   /// without change of volume.
   std::vector<Field> strain_fields(const Displaced& moved) const;
-  /// What the fluid does at each sphere, by name, a column a sphere of the packing: `fluid_velocity` (m/s) and
-  /// `fluid_stress` (Pa, in the order of Field). Cost: as faces() and a pass over cells and facets.
+  /// What the fluid does at each sphere, by name, a column a sphere of the packing: `fluid_velocity` (m/s),
+  /// `fluid_stress` (Pa, in the order of Field) and `fluid_stress_deviator` (see stress_fields). Cost: as faces() and a
+  /// pass over cells and facets.
   std::vector<Field> sphere_fields() const;
   /// Flow rate (m³/s, positive along the axis) between the pores on either side of a plane. In a steady flow
   /// with sealed sides it is the same for every plane. Throws InputError for a plane outside the box.

@@ -3,6 +3,7 @@
 
 #include "geometry/pi.hpp"
 #include "geometry/solid_angle.hpp"
+#include "geometry/tensor_rows.hpp"
 #include "physics/pore_velocities.hpp"
 #include "physics/macroscopic_gradient.hpp"
 
@@ -34,13 +35,6 @@ Eigen::Matrix3d second_moment(const Eigen::Vector3d& a, const Eigen::Vector3d& b
   return sum / 3.0;
 }
 
-void add(Stresses& stresses, int sphere, const Eigen::Matrix3d& moment) {
-  const Eigen::Matrix3d s = 0.5 * (moment + moment.transpose());
-  Eigen::Matrix<double, 6, 1> entries;
-  entries << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2);
-  stresses.col(sphere) += entries;
-}
-
 }  // namespace
 
 Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats,
@@ -57,7 +51,7 @@ Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats,
       const bool positive = solid_angle(x, y, z) >= 0.0;
       const int sphere = network.vertex_sphere[cell[i]];
       const Eigen::Vector3d offset = vertices.centres.col(cell[i]) - spheres.centres.col(sphere);
-      add(stresses, sphere,
+      stresses.col(sphere) += tensor_rows(
           -3.0 / (4.0 * pi) * (pressures[network.cell_pore[c]] - gradient.dot(offset)) *
               (positive ? second_moment(x, y, z) : second_moment(x, z, y)));
     }
@@ -75,8 +69,8 @@ Stresses sphere_stresses(const PoreNetwork& network, const Throats& throats,
         const double radius = vertices.radii[vertex], length = way.norm();
         if (!(length > 0.0)) continue;
         const double volume = 4.0 / 3.0 * pi * std::pow(radius, 3);
-        add(stresses, network.vertex_sphere[vertex],
-            shares[f][k] * radius / (length * volume) * force * way.transpose());
+        stresses.col(network.vertex_sphere[vertex]) +=
+            tensor_rows(shares[f][k] * radius / (length * volume) * force * way.transpose());
       }
     }
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "results/sphere_strains.hpp"
 
-
+#include "geometry/tensor_rows.hpp"
 #include "pfv/error.hpp"
+#include "results/tensor_fields.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,16 +82,13 @@ class DisplacedCells {
 };
 
 /// The gradient is taken over places now; that over places before is (1 - gradient)^-1 - 1.
-Eigen::Matrix<double, 6, 1> strain_of(const CellSum& around) {
+TensorRows strain_of(const CellSum& around) {
   constexpr double torn = 0.1;
-  if (!(around.volume > 0.0)) return Eigen::Matrix<double, 6, 1>::Zero();
+  if (!(around.volume > 0.0)) return TensorRows::Zero();
   const Matrix3d back = Matrix3d::Identity() - around.gradient / around.volume;
-  if (!(back.determinant() > torn)) return Eigen::Matrix<double, 6, 1>::Zero();
+  if (!(back.determinant() > torn)) return TensorRows::Zero();
   const Matrix3d gradient = back.inverse() - Matrix3d::Identity();
-  const Matrix3d strain = 0.5 * (gradient + gradient.transpose());
-  Eigen::Matrix<double, 6, 1> rows;
-  rows << strain(0, 0), strain(1, 1), strain(2, 2), strain(0, 1), strain(0, 2), strain(1, 2);
-  return rows;
+  return tensor_rows(gradient);
 }
 
 void require_places(const Displaced& moved, const Container& cell, Eigen::Index packed) {
@@ -130,14 +127,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> sphere_strains(const BuiltNetwork& buil
 }
 
 std::vector<Field> strain_fields(Eigen::Matrix<double, 6, Eigen::Dynamic> strains) {
-  Eigen::RowVectorXd deviators(strains.cols());
-  for (Eigen::Index k = 0; k < strains.cols(); ++k) {
-    const double mean = strains.col(k).head<3>().mean();
-    const double square = (strains.col(k).head<3>().array() - mean).square().sum();
-    deviators[k] = std::sqrt(2.0 / 3.0 * (square + 2.0 * strains.col(k).tail<3>().squaredNorm()));
-  }
-  strains.row(4).swap(strains.row(5));  // VTK's order: ... xy, yz, xz
-  return {{"strain", std::move(strains)}, {"strain_deviator", std::move(deviators)}};
+  return tensor_fields("strain", std::move(strains), 2.0 / 3.0);
 }
 
 }  // namespace pfv
