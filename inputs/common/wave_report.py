@@ -6,6 +6,7 @@ import numpy as np
 
 import bed
 import contact_stress
+import fields
 import wave
 from plotting import plt, save_figure
 
@@ -21,21 +22,11 @@ def displacements(run, step):
     return first[kept], now[:, 2:5] - first[kept][:, 2:5]
 
 
-def strain_deviator(grains, moved):
-    """sqrt(2/3 e:e) of the deviator e of each grain's strain (eq. 2.21): the gradient that fits the
-    displacements of the neighbours within 1.6 mean diameters best."""
-    places, reach = grains[:, 2:5], 3.2 * grains[:, 5].mean()
-    invariants = np.zeros(len(grains))
-    for k, place in enumerate(places):
-        arms = places - place
-        near = np.nonzero((arms**2).sum(axis=1) < reach**2)[0]
-        if len(near) < 6:
-            continue
-        gradient, *_ = np.linalg.lstsq(arms[near], moved[near] - moved[k], rcond=None)
-        strain = (gradient + gradient.T) / 2
-        strain -= np.trace(strain) / 3 * np.eye(3)
-        invariants[k] = math.sqrt(2.0 / 3.0 * (strain**2).sum())
-    return invariants
+def strain_deviator(run, step):
+    """sqrt(2/3 e:e) of the deviator e of the strain around each grain since the run began (eqs. 2.20 and 2.21), as the
+    fix has it in its files, by id; 0 where a neighbourhood has been torn apart."""
+    found = fields.Fields(run.folder / f"{run.out}_grains_{step}.vtu")
+    return found["strain_deviator"][np.argsort(found["id"])]
 
 
 def layer_porosity(run, grains):
@@ -54,6 +45,13 @@ def series(run):
         unbalanced.append(force / contact if contact > 0 else math.nan)
         porosities.append(layer_porosity(run, run.grains(step)))
     return np.array(times), np.array(unbalanced), np.array(porosities)
+
+
+def deviators_and_porosities(run):
+    """Mean strain deviator of the grains and the porosity at each snapshot (fig. 6.23)."""
+    steps = [step for _, step in run.snapshots()]
+    return (np.array([strain_deviator(run, step).mean() for step in steps]),
+            np.array([layer_porosity(run, run.grains(step)) for step in steps]))
 
 
 def draw_state(run):
@@ -123,7 +121,7 @@ def draw_strain(run, times):
     for place, wanted in zip(axes[0], times):
         time, step = min(shots, key=lambda shot: abs(shot[0] - wanted))
         grains, moved = displacements(run, step)
-        deviator = strain_deviator(grains, moved)
+        deviator = strain_deviator(run, step)
         now = grains[:, 2:5] + moved
         order = np.argsort(deviator)
         dots = place.scatter(now[order, 0], now[order, 2], c=deviator[order], s=25, vmin=0.0,

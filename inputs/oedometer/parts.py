@@ -15,7 +15,7 @@ import scene
 from plotting import plt, save_figure
 
 RUNS = {"new network each step": ("retriangulate 1e-12", 60), "network and factor kept": ("", 2000),
-        "Gauss-Seidel, network kept": ("solver gauss_seidel tolerance 1e-6", 200)}
+        "Gauss-Seidel, network kept": ("solver gauss_seidel tolerance 1e-6", 40)}
 GROUPS = {"triangulation": ("triangulate",), "throats, matrix": ("throats", "assemble"),
           "ordering, factor": ("order", "factor"), "solve": ("solve",), "forces": ("forces",)}
 BETWEEN = (1, 10, 100, 1000, 10000)  # steps between two networks
@@ -78,8 +78,8 @@ def run(words):
     settings = oedometer.parse(words)
     store = oedometer.SCENE / (settings["OUT"] + "_measured.json")
     sample = json.loads(store.read_text()) if settings["KEEP"] and store.exists() else oedometer.prepare(settings)
-    runs = {name: one_run(settings, sample, name, *how) for name, how in RUNS.items()}
     store.write_text(json.dumps(sample, indent=1))
+    runs = {name: one_run(settings, sample, name, *how) for name, how in RUNS.items()}
     steps = {name: per_step(one, sample["cpu_dry_step"]) for name, one in runs.items()}
     each, kept, sweeps = steps.values()
     networks = over_networks(each, kept)

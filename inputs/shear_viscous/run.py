@@ -29,12 +29,12 @@ KEYS = {
 
 
 def measures_of(run):
-    grains, moved = wave_report.displacements(run, run.snapshots()[-1][1])
+    _, moved = wave_report.displacements(run, run.snapshots()[-1][1])
     _, _, porosities = wave_report.series(run)
     return {"settlement": float(run.state["mean_z"][0] - run.state["mean_z"][-1]),
             "porosity_change": float(porosities[-1] - porosities[0]),
             "displacement": float(np.sqrt((moved**2).sum(axis=1).mean())),
-            "deviator": float(wave_report.strain_deviator(grains, moved).mean()),
+            "deviator": float(wave_report.strain_deviator(run, run.snapshots()[-1][1]).mean()),
             "largest_energy": float(run.state["kinetic_energy"].max()),
             "time_step_limit": run.figures["time_step_limit"], "cpu": run.figures["cpu"],
             "balance": float(abs(run.state["balance"]).max())}

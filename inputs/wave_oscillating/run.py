@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which oscillating waves liquefy a loose bed: amplitudes and periods (thesis section 6.4).
+"""Which oscillating waves liquefy a loose bed, and how far they move the grains of its middle: amplitudes and periods
+(thesis section 6.4).
 
     run.py [KEY=VALUE...]      called by ./run.sh wave_oscillating [KEY=VALUE...]
 """
@@ -15,6 +16,7 @@ import numpy as np
 import bed
 import scene
 import wave
+import wave_report
 from plotting import plt, save_figure
 
 KEYS = {
@@ -50,6 +52,42 @@ def mean_over_period(run, period):
     return np.convolve(run.liquefied(), np.ones(count) / count, mode="valid")
 
 
+def swing(run, period):
+    """Horizontal displacements of the grains that began within a diameter of the middle, where the wave has its node
+    (figs. 6.30 to 6.39): times; each grain's over time, m; height at rest, m; half its range over the last period."""
+    shots = run.snapshots()
+    moved = np.array([wave_report.displacements(run, step)[1][:, 0] for _, step in shots])
+    first = run.grains(shots[0][1])
+    middle = abs(first[:, 2] - bed.LENGTH / 2) < 2 * first[:, 5].mean()
+    times = np.array([time for time, _ in shots])
+    last = moved[times > times[-1] - period][:, middle]
+    return {"times": times, "moved": moved[:, middle], "heights": first[middle, 4],
+            "range": (last.max(axis=0) - last.min(axis=0)) / 2}
+
+
+def draw_swings(swings, base):
+    """Mean of the uppermost third over the last period; range over the height; largest over the period."""
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14, 4))
+    for (amplitude, period), one in swings.items():
+        upper = one["heights"] > np.quantile(one["heights"], 2 / 3)
+        last = one["times"] > one["times"][-1] - period
+        label = f"{amplitude:g} Pa, {period:g} s"
+        phase = (one["times"][last] - one["times"][last][0]) / period
+        left.plot(phase, 1e3 * one["moved"][last][:, upper].mean(axis=1), label=label)
+        order = np.argsort(one["heights"])
+        middle.plot(1e3 * one["range"][order], one["heights"][order], lw=1, label=label)
+    for amplitude in sorted({amplitude for amplitude, _ in swings}):
+        line = [(period, 1e3 * abs(one["moved"]).max()) for (a, period), one in swings.items() if a == amplitude]
+        right.loglog(*zip(*line), "o-", label=f"{amplitude:g} Pa")
+    left.set(xlabel="t / period", ylabel="u_x, mm", title="upper third of the middle, last period")
+    middle.set(xlabel="half the range of u_x, mm", ylabel="z, m", title="grains of the middle, last period",
+               xscale="log")
+    right.set(xlabel="period, s", ylabel="largest |u_x| of the middle, mm")
+    left.legend(fontsize=6)
+    right.legend(fontsize=8)
+    save_figure(figure, f"{base}_displacements.png")
+
+
 def draw(rows, settings, consolidation, base):
     figure, axes = plt.subplots(figsize=(6, 4))
     values = np.array([row["built_up"] for row in rows])
@@ -73,18 +111,20 @@ def work(words):
         raise scene.BadSetting("N must be at least 100, SHAKE at least 0")
     measures = bed.prepare(SCENE, "loose", settings["N"], settings["SEED"], settings["OUT"])
     consolidation = consolidation_time(settings, measures)
-    rows = []
+    rows, swings = [], {}
     for period in periods:
         for amplitude in amplitudes:
             print(f"amplitude {amplitude:g} Pa, period {period:g} s", flush=True)
             out = f"{settings['OUT']}_{amplitude:g}_{period:g}"
             run = wave.run(SCENE, settings, measures, out,
                            f"{amplitude:g}*sin({2 * math.pi / period:.12g}*v_t)", settings["END"],
-                           top=settings["TOP"], snapshots=5, shake=settings["SHAKE"],
+                           top=settings["TOP"], snapshots=round(16 * settings["END"] / period), shake=settings["SHAKE"],
                            records=max(400, round(40 * settings["END"] / period)))
+            swings[amplitude, period] = one = swing(run, period)
             rows.append({"amplitude": amplitude, "period": period, "cpu": run.figures["cpu"],
                          "built_up": float(mean_over_period(run, period).max()),
                          "most": float(run.liquefied().max()),
+                         "swing": float(one["range"].mean()), "farthest": float(abs(one["moved"]).max()),
                          "settlement": float(run.state["mean_z"][0] - run.state["mean_z"][-1]),
                          "balance": float(abs(run.state["balance"]).max())})
     print(f"\nOscillating wave on a loose bed of {settings['N']} grains, porosity "
@@ -95,7 +135,13 @@ def work(words):
     for period in periods:
         line = [row for row in rows if row["period"] == period]
         print(f"  {period:9.2f}  " + "".join(f"{row['built_up']:13.2f}" for row in line))
+    print("  horizontal displacement of the middle's grains, mm: mean half range over the last period, largest since "
+          "the beginning")
+    for period in periods:
+        line = [row for row in rows if row["period"] == period]
+        print(f"  {period:9.2f}  " + "".join(f"{1e3 * row['swing']:8.3f} {1e3 * row['farthest']:7.2f}" for row in line))
     draw(rows, settings, consolidation, SCENE / settings["OUT"])
+    draw_swings(swings, SCENE / settings["OUT"])
     balance = max(row["balance"] for row in rows)
     # relative to the largest pressure, which passes through zero with the wave
     checks = [("the fluid's own force balance, largest", balance, "<= 1e-9", balance <= 1e-9)]

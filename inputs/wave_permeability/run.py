@@ -32,15 +32,15 @@ KEYS = {
 
 
 def measures_of(run):
-    _, unbalanced, porosities = wave_report.series(run)
-    grains, moved = wave_report.displacements(run, run.snapshots()[-1][1])
+    _, unbalanced, _ = wave_report.series(run)
+    deviators, porosities = wave_report.deviators_and_porosities(run)
     excess = run.excess()
     return {"viscosity": run.figures["viscosity"], "cpu": run.figures["cpu"],
             "excess_most": float(excess.max()), "excess_left": float(excess[-10:].mean()),
             "liquefied_most": float(run.liquefied().max()),
             "porosity_change": float(porosities[-1] - porosities[0]),
             "settlement": float(run.state["mean_z"][0] - run.state["mean_z"][-1]),
-            "deviator": float(wave_report.strain_deviator(grains, moved).mean()),
+            "deviator": float(deviators[-1]), "deviators": deviators.tolist(), "porosities": porosities.tolist(),
             "unbalanced": float(np.nanmax(unbalanced[1:])),
             "networks": int(run.state["retriangulations"][-1]),
             "balance": float(abs(run.state["balance"]).max())}
@@ -59,6 +59,17 @@ def draw(runs, base):
     axes[2].set(ylabel="porosity", xlabel="t, s")
     axes[0].legend(fontsize=8)
     save_figure(figure, f"{base}_permeability.png")
+
+
+def draw_contraction(runs, found, base):
+    """Strain deviator over porosity (fig. 6.23)."""
+    figure, axes = plt.subplots(figsize=(6, 4))
+    for run, f in zip(runs, found):
+        change = 1e3 * (np.array(f["porosities"]) - f["porosities"][0])
+        axes.plot(change, f["deviators"], "o-", ms=3, label=f"{run.figures['viscosity']:.3g} Pa s")
+    axes.set(xlabel="change of porosity, 1e-3", ylabel="mean strain deviator (eq. 2.21)")
+    axes.legend(fontsize=8)
+    save_figure(figure, f"{base}_contraction.png")
 
 
 def work(words):
@@ -86,6 +97,7 @@ def work(words):
               f"{f['excess_left']:8.0f} Pa {f['liquefied_most']:12.2f} "
               f"{1e3 * f['settlement']:10.2f} mm {f['deviator']:13.4f} {f['cpu']:7.0f} s")
     draw(runs, SCENE / settings["OUT"])
+    draw_contraction(runs, found, SCENE / settings["OUT"])
     balance = max(f["balance"] for f in found)
     checks = [("the fluid's own force balance, largest", balance, "<= 1e-10", balance <= 1e-10)]
     if len(found) > 1 and settings["END"] >= 2.0:
