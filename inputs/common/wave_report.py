@@ -132,6 +132,30 @@ def draw_strain(run, times):
     save(figure, run, "strain")
 
 
+def draw_motion(run, times):
+    """Snapshots: pressures of the pores and speeds of the grains (fig. 6.11); arrows as long as the grains'
+    accelerations, the longest two diameters, in the colours of their speeds (fig. 6.13)."""
+    shots = run.snapshots()
+    figure, axes = plt.subplots(2, len(times), figsize=(4.6 * len(times), 5.6), sharex=True, sharey=True, squeeze=False)
+    for (above, below), wanted in zip(axes.T, times):
+        time, step = min(shots, key=lambda shot: abs(shot[0] - wanted))
+        grains, pores = run.grains(step), fields.Fields(run.folder / f"{run.out}_pores_{step}.vtu")
+        speeds = np.linalg.norm(grains[:, 7:10], axis=1)
+        mass = bed.DENSITY * 4.0 / 3.0 * math.pi * grains[:, 5]**3
+        accelerations = grains[:, 10:13] / mass[:, None]
+        longest = max(np.linalg.norm(accelerations, axis=1).max(), 1e-300)
+        arrows = 4 * grains[:, 5].mean() * accelerations / longest
+        dots = above.scatter(pores.points[:, 0], pores.points[:, 2], c=pores["pressure"], s=4, cmap="coolwarm")
+        figure.colorbar(dots, ax=above, label="p, Pa")
+        above.scatter(grains[:, 2], grains[:, 4], s=10, facecolors="none", edgecolors="0.4", linewidths=0.3)
+        drawn = below.quiver(grains[:, 2], grains[:, 4], arrows[:, 0], arrows[:, 2], speeds, angles="xy",
+                             scale_units="xy", scale=1, width=3e-3, cmap="viridis")
+        figure.colorbar(drawn, ax=below, label="|v|, m/s")
+        above.set(title=f"t = {time:.1f} s", aspect="equal")
+        below.set(title=f"acceleration up to {longest:.2g} m/s²", aspect="equal", xlabel="x, m")
+    save(figure, run, "motion")
+
+
 def still_until(run, tolerance):
     """Amplitude up to which the sensors stay within tolerance x A of the harmonic pressures (rms),
     after the first 100 Pa, in which what is left of the bed's own consolidation drains."""

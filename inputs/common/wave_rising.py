@@ -100,5 +100,6 @@ def work(folder, kind, words):
     wave_report.draw_sensors(run)
     wave_report.draw_stress(run, times)
     wave_report.draw_strain(run, times[1::2])
+    wave_report.draw_motion(run, times[1:])
     return scene.summary(folder, settings["OUT"], {**settings, **d},
                          promises(run, kind, settings, d))

@@ -6,7 +6,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from coupled import EDGE, FLOW, HERE, CoupledTest, packing, write_data
+from coupled import EDGE, FLOW, HERE, CoupledTest, packing, read_thermo, write_data
 from plates import write_plate
 
 SIDES = ["xlo", "xhi", "ylo", "yhi", "zlo"]
@@ -122,6 +122,25 @@ class GrainStresses(CoupledTest):
         """Contacts between ranks count once for each grain."""
         fields, rows = self.run_pressed(ranks=2)
         self.check_sums(fields, rows)
+
+    def test_in_a_periodic_cell_add_up_to_the_virial(self):
+        """Of LIGGGHTS, which knows it of the pairs alone; contacts across the sides among them."""
+        grains = [(*grain[:4], 1.3 * grain[4]) for grain in packing(4)]
+        lines = ["grains", "", f"{len(grains)} atoms", "1 atom types", ""]
+        lines += [f"0 {EDGE} {axis}lo {axis}hi" for axis in "xyz"] + ["", "Atoms", ""]
+        lines += [f"{n} 1 {2 * r!r} 2600.0 {x!r} {y!r} {z!r}" for n, x, y, z, r in grains]
+        (self.folder / "packing.data").write_text("\n".join(lines) + "\n")
+        head = (HERE / "in.packing").read_text().replace("boundary        f f f", "boundary p p p")
+        self.liggghts(head + "fix flow all pfv viscosity 0.01 couple_every 1 gradient 12 -7 3 output 100 f.pvd "
+                      "contact_stress\ncompute t all temp\ncompute v all pressure t virial\n"
+                      "thermo_style custom step c_v[1] c_v[2] c_v[3]\nthermo 100\n"
+                      "thermo_modify norm no format float %.17g\nrun 200\n")
+        row = read_thermo((self.folder / "log.liggghts").read_text())[-1]
+        fields = self.fields(200)
+        sums = (4 / 3 * numpy.pi * fields["radius"]**3) @ fields["contact_stress"] / EDGE**3
+        virial = numpy.array([row[f"v[{k}]"] for k in (1, 2, 3)])  # LIGGGHTS has no symmetric part of the others
+        numpy.testing.assert_allclose(sums[:3], -virial, rtol=0, atol=1e-10 * numpy.abs(virial).max())
+        self.assertLess(sums[:3].max(), 0.0)
 
     def test_are_not_there_unasked(self):
         self.liggghts("include in.packing\n" + FIX.replace(" contact_stress", "") + "run 0\n")
