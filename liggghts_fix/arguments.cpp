@@ -326,7 +326,8 @@ void parse_keyword(Words& words, PfvSettings& settings) {
   }
   std::string known = settings_with(&pfv::Hosts::fix);
   for (const Keyword& one : keywords) append(known, one.name);
-  throw pfv::InputError("unknown keyword '" + keyword + "'; there are " + known);
+  throw pfv::InputError("unknown keyword '" + keyword + "'; there are " + known + "; and behind a face " +
+                        pfv::names_of<pfv::Wall>(", ") + ", " + boundary_forms());
 }
 
 /// A profile makes its face one of imposed pressure and takes the place of a constant one, which a face with

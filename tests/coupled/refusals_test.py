@@ -28,7 +28,8 @@ class Refusals(CoupledTest):
     # the command
 
     def test_unknown_keyword(self):
-        self.refuse(FLOW + " colour blue", "unknown keyword 'colour'", "conductance", after="")
+        self.refuse(FLOW + " colour blue", "unknown keyword 'colour'", "conductance", "behind a face no_slip, symmetry, sealed, pressure P",
+                    after="")
 
     def test_no_number(self):
         self.refuse("viscosity high " + faces(), "viscosity", "'high'", after="")
