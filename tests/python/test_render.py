@@ -82,6 +82,16 @@ class Render(CommandCase):
         return subprocess.run([sys.executable, "-m", "pfv.render", *words], cwd=self.folder, text=True,
                               capture_output=True, env=settings)
 
+    def test_without_what_it_draws_with_a_sentence(self):
+        hidden = self.folder / "hidden"
+        for package, debian in (("vtkmodules", "python3-vtk9"), ("matplotlib", "python3-matplotlib")):
+            shutil.rmtree(hidden, ignore_errors=True)
+            (hidden / package).mkdir(parents=True)
+            (hidden / package / "__init__.py").write_text("raise ImportError('hidden')\n")
+            done = self.render("g.vtu", PYTHONPATH=f"{hidden}:{os.environ['PYTHONPATH']}")
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+            self.assertIn("install " + debian, done.stderr)
+
     def test_without_any_screen_a_sentence(self):
         done = self.render("g.vtu", DISPLAY=":no", PATH="/nowhere")
         self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)

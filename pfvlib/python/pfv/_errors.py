@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the module raises and warns of."""
+import sys
 
 
 class Error(Exception):
@@ -31,6 +32,14 @@ class AccuracyWarning(UserWarning):
 
 class PackingWarning(UserWarning):
     """Something was assumed in reading a file of spheres."""
+
+
+def lacking(name, sentence, missing):
+    """Ends a module that runs as a program (`name` is its __name__) with a sentence, else raises ImportError."""
+    if name == "__main__":
+        print(f"pfv: {sentence}", file=sys.stderr)
+        sys.exit(2)
+    raise ImportError(sentence) from missing
 
 
 for _class in (Error, InputError, SolverError, FileError, AccuracyWarning, PackingWarning):

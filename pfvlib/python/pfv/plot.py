@@ -17,7 +17,7 @@ import sys
 import numpy as np
 
 from . import read_packing
-from ._errors import Error, InputError
+from ._errors import Error, InputError, lacking
 from ._tables import Table
 
 try:
@@ -27,7 +27,7 @@ try:
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 except ImportError as missing:
-    raise ImportError("pfv.plot draws with matplotlib: install python3-matplotlib") from missing
+    lacking(__name__, "pfv.plot draws with matplotlib: install python3-matplotlib", missing)
 
 _PANEL = (7.5, 2.1)  # inches
 
@@ -287,7 +287,7 @@ def main(words=None):
             drawn = figure(file, asked.packing)
             drawn.savefig(picture, dpi=asked.dpi)
             print(picture)
-    except (Error, OSError, ValueError) as problem:
+    except (Error, ImportError, OSError, ValueError) as problem:
         print(f"pfv.plot: {problem}", file=sys.stderr)
         return 2
     return 0

@@ -15,9 +15,12 @@ import sys
 import numpy as np
 
 from ._display import ensure_screen
-from ._errors import Error, InputError
-from ._vtu import Grid, collection
+from ._errors import Error, InputError, lacking
 
+try:
+    from ._vtu import Grid, collection
+except ImportError as missing:
+    lacking(__name__, str(missing), missing)
 try:
     from matplotlib import colormaps
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -25,7 +28,7 @@ try:
     from matplotlib.colors import LogNorm, Normalize
     from matplotlib.figure import Figure
 except ImportError as missing:
-    raise ImportError("pfv.render writes its pictures with matplotlib: install python3-matplotlib") from missing
+    lacking(__name__, "pfv.render writes its pictures with matplotlib: install python3-matplotlib", missing)
 
 from .plot import NotebookFigure
 
