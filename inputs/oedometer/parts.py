@@ -65,11 +65,11 @@ def draw(steps, networks, path):
     left.set(ylabel="part of the CPU time, %", ylim=(0, 100))
     left.tick_params(axis="x", labelsize=8)
     left.legend(fontsize=7)
-    dry, flow = zip(*networks.values())
-    names = [f"{between}" for between in networks]
-    right.bar(names, dry, label="LIGGGHTS")
-    right.bar(names, flow, bottom=dry, label="flow")
-    right.set(xlabel="steps between two networks", ylabel="CPU, ms a step", yscale="log")
+    names = [f"{between}\n{dry + flow:.3g} ms" for between, (dry, flow) in networks.items()]
+    parts_of = [100 * dry / (dry + flow) for dry, flow in networks.values()]
+    right.bar(names, parts_of, label="LIGGGHTS")
+    right.bar(names, [100 - part for part in parts_of], bottom=parts_of, label="flow")
+    right.set(xlabel="steps between two networks; CPU of a step", ylabel="part of the CPU time, %", ylim=(0, 100))
     right.legend(fontsize=8)
     save_figure(figure, path)
 
