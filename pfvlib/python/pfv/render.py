@@ -45,7 +45,8 @@ import vtkmodules.vtkInteractionStyle  # noqa: F401
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 
 UNITS = {"force": "N", "pressure": "Pa", "displacement": "m", "velocity": "m/s", "fluid_velocity": "m/s", "radius": "m",
-         "flux": "m³/s", "fluid_stress": "Pa"}
+         "flux": "m³/s", **{f"{name}_stress{end}": "Pa" for name in ("fluid", "contact", "inertial")
+                            for end in ("", "_deviator")}}
 _PIXELS = (900, 750)
 
 
