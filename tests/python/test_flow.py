@@ -164,5 +164,16 @@ class Answers(unittest.TestCase):
         self.assertEqual(len(fields["types"]), len(fields["ends"]))
 
 
+class AgainstFiniteElements(unittest.TestCase):
+    def test_pressures_at_points(self):
+        """Of 25 spheres (doc/pore_scale.md): rms differences, parts of the fall; 0.127 for a straight one."""
+        found = np.genfromtxt(DATA / "stokes_bed_25_points.csv", delimiter=",", names=True)
+        places, bed = np.column_stack([found[k] for k in "xyz"]), grains("bed_25.csv")
+        for law, limit in (("hydraulic_radius", 0.065), ("open_throat", 0.054)):
+            flow = pfv.Flow(through_flow(wall="symmetry"), pfv.Fluid(viscosity=1.0), conductance=law)
+            flow.evaluate(bed.positions, bed.radii)
+            self.assertLess(np.sqrt(((flow.pressure_at(places) - found["pressure"])**2).mean()), limit)
+
+
 if __name__ == "__main__":
     unittest.main()
