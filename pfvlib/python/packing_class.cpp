@@ -72,6 +72,10 @@ void add_arrays(py::class_<PackingFile>& packing) {
                                 [](py::object self) { return rows_or_none(arrays_of(self).angular_velocities, self); },
                                 "N x 3, rad/s, or None");
   packing.def("__len__", [](const PackingFile& self) { return self.packing.ids.size(); });
+  packing.def("__repr__", [](const PackingFile& self) {
+    const std::string step = self.step ? ", step " + std::to_string(*self.step) : "";
+    return "<pfv.Packing of " + std::to_string(self.packing.ids.size()) + " spheres" + step + ">";
+  });
 }
 
 void add_room(py::class_<PackingFile>& packing) {

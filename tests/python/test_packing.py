@@ -31,6 +31,7 @@ class Packings(CommandCase):
         read = pfv.read_packing(path)
         self.assert_same_spheres(read, written)
         self.assertEqual((read.periodic, read.step, read.remarks), ("xyz", 1200, []))
+        self.assertEqual(repr(read), "<pfv.Packing of 100 spheres, step 1200>")
         np.testing.assert_allclose(read.bounds, UNIT, atol=1e-15)
         np.testing.assert_array_equal(read.tilt, TILT)
 
