@@ -353,7 +353,7 @@ void FixPfv::advance() {
   container_ = current_container();
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
-  const bool mean = settings_.steps.couple_every > 1 || (adapts() && steps > 1);
+  const bool mean = steps > 1;
   if (mean) use_mean_velocities_of_faces();
   const Eigen::Vector3d lengths = cell_lengths_then();
   since_.face_positions = faces_.positions();
@@ -364,7 +364,9 @@ void FixPfv::advance() {
     flow_->set_container(container_);
     call_flow(since_.time, true);
     watch_time_step();
-    if (mean || adapts() || cell_.changes()) since_.grains = grains_.snapshot();
+    // a later run must not take an old one for that of the last solve
+    const bool is_needed = settings_.steps.couple_every > 1 || adapts() || cell_.changes();
+    since_.grains = is_needed ? grains_.snapshot() : PfvSnapshot{};
   });
   since_.time = 0.0;
   if (adapts()) plan_next_solve(steps);

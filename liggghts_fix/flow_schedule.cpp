@@ -13,13 +13,19 @@ namespace LAMMPS_NS {
 /// Whether the interval is the flow's own choice.
 bool FixPfv::adapts() const { return settings_.steps.couple_error.has_value(); }
 
+/// Of one answer for all ranks, for what follows is collective: only where the flow is are the faces' places known.
 bool FixPfv::solve_due() {
   if (!adapts()) return since_.steps >= settings_.steps.couple_every;
+  if (since_.steps >= schedule_.next().steps) return true;
   const double tolerance = *settings_.steps.couple_error;
-  return since_.steps >= schedule_.next().steps ||
-         (!settings_.bindings.empty() &&
-          pfv::imposed_values_differ(current_container(), container_, tolerance)) ||
-         (since_.steps >= 2 && schedule_.next().has_jumped(gross_motion(), tolerance));
+  const pfv::Container now = settings_.bindings.empty() ? container_ : current_container();
+  const double motion = since_.steps >= 2 ? gross_motion() : schedule_.next().motion;
+  int due = 0;
+  if (ranks_.is_first())
+    due = (!settings_.bindings.empty() && pfv::imposed_values_differ(now, container_, tolerance)) ||
+          schedule_.next().has_jumped(motion, tolerance);
+  MPI_Bcast(&due, 1, MPI_INT, 0, world);
+  return due;
 }
 
 /// Sum of |v| r² of the flow's grains, m³/s; collective.

@@ -397,5 +397,24 @@ class Refusals(PeriodicTest):
             self.refuse(DRIVEN, "couple/cfd", "take out", "viscosity and density", before=before, after=after)
 
 
+class Interval(PeriodicTest):
+    def test_a_gradient_that_changes_is_solved_at_the_same_steps_on_1_and_2_ranks(self):
+        """Pressures and gradient are weighed by the cell's length, which the flow's rank alone knows."""
+        self.write("p p f")
+        wave = "variable grad equal 100*sin(2*PI*step*dt/0.01)\n"
+        flow = f"viscosity 1e-3 face zlo plane 0 pressure 0 face zhi plane {EDGE} pressure 100 gradient v_grad 0 0"
+        run = "unfix integr\nthermo_style custom step f_flow[10]\nrun 40\n"
+        alone, together = (self.cell(flow, run, "p p f", wave, ranks=ranks) for ranks in (1, 2))
+        self.assertEqual(together, alone)
+
+    def test_each_step_and_then_each_fourth_takes_means_since_the_last_solve(self):
+        """The places of the first run's beginning are not those of its last solve."""
+        self.write(velocities=random_velocities(packing()))
+        self.cell(f"viscosity 1e-3 {EACH} gradient 0 0 -1",
+                  dump("flow.dump") + "run 40\nfix_modify flow couple_every 4\nrun 4\n")
+        steps = read_dump(self.folder / "flow.dump")
+        self.assertLess(largest_difference(forces(steps[44]), forces(steps[40])), 0.02)
+
+
 if __name__ == "__main__":
     unittest.main()
