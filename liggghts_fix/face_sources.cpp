@@ -98,6 +98,7 @@ int PfvFaceSources::axis_of(int number) const {
 }
 
 void PfvFaceSources::bind(const PfvSettings& settings) {
+  const std::vector<Eigen::Vector3d> before = outward_normals();
   container_ = settings.container;
   sources_ = settings.sources;
   names_.clear();
@@ -109,6 +110,7 @@ void PfvFaceSources::bind(const PfvSettings& settings) {
   gliding_.assign(count(), {});
   shapes_.assign(container_ ? count() : 0, {});
   outwards_.assign(container_ ? count() : 0, 0.0);
+  normals_before_ = before.size() == outwards_.size() ? before : std::vector<Eigen::Vector3d>();
   parts_.assign(container_ ? count() : 0, {});
   read_since_bound_ = false;
   for (int number = 0; number < count(); ++number) {
@@ -191,8 +193,24 @@ pfv::Surface PfvFaceSources::surface(int number) const {
   const pfv::Surface& surface = shapes_[number].surface;
   const Eigen::Vector3d middle(0.5 * (domain->boxlo[0] + domain->boxhi[0]), 0.5 * (domain->boxlo[1] + domain->boxhi[1]),
                                0.5 * (domain->boxlo[2] + domain->boxhi[2]));
-  const double outwards = outwards_[number] != 0.0 ? outwards_[number] : surface.distance(middle);
-  return surface.is_plane() && outwards < 0.0 ? turned(surface) : surface;
+  return (outwards_[number] != 0.0 ? outwards_[number] : way_out(number, middle)) < 0.0 ? turned(surface) : surface;
+}
+
+std::vector<Eigen::Vector3d> PfvFaceSources::outward_normals() const {
+  std::vector<Eigen::Vector3d> normals;
+  for (std::size_t number = 0; number < outwards_.size(); ++number)
+    normals.push_back(outwards_[number] * shapes_[number].surface.normal);
+  return normals;
+}
+
+/// Of the run before, where it has told: grains may have passed the wall since.
+double PfvFaceSources::way_out(int number, const Eigen::Vector3d& inside) const {
+  const pfv::Surface& surface = shapes_[number].surface;
+  if (!surface.is_plane()) return 1.0;
+  constexpr double same_way = 0.5;
+  const double along = normals_before_.empty() ? 0.0 : surface.normal.dot(normals_before_[number]);
+  if (std::abs(along) > same_way) return along > 0.0 ? 1.0 : -1.0;
+  return surface.distance(inside) < 0.0 ? -1.0 : 1.0;
 }
 
 std::vector<double> PfvFaceSources::mesh_areas() const {
@@ -229,10 +247,8 @@ std::string PfvFaceSources::described(int number) const {
 
 /// A wall does not say on which side of it the fluid is: the grains do, when they are first seen.
 void PfvFaceSources::turn_outwards(const Eigen::Vector3d& middle) {
-  for (int number = 0; number < count(); ++number) {
-    const pfv::Surface& surface = shapes_[number].surface;
-    if (outwards_[number] == 0.0) outwards_[number] = surface.is_plane() && surface.distance(middle) < 0.0 ? -1.0 : 1.0;
-  }
+  for (int number = 0; number < count(); ++number)
+    if (outwards_[number] == 0.0) outwards_[number] = way_out(number, middle);
 }
 
 void PfvFaceSources::read() {
@@ -385,6 +401,18 @@ void PfvFaceSources::follow_grains(const PfvGrainTotals& grains) {
     if (container_) shapes_[number].surface.offset = upper ? extreme : -extreme;
     positions_[number] = extreme;
   }
+  for (int axis = 0; axis < 3 && !container_; ++axis)
+    if (!(positions_[2 * axis] < positions_[2 * axis + 1]) && !followers().empty())
+      throw pfv::InputError("along " + std::string(1, "xyz"[axis]) + " its faces leave no room between them" + followers());
+}
+
+std::string PfvFaceSources::followers() const {
+  std::ostringstream text;
+  for (int number = 0; number < count(); ++number)
+    if (sources_[number].kind == Source::extent)
+      text << (text.str().empty() ? "; the place of the outermost grain is that of face " : ", ") << names_[number] << " ("
+           << positions_[number] << " m)";
+  return text.str().empty() ? "" : text.str() + ": where the grains leave, give a plane in place of `extent`, or end the run";
 }
 
 void PfvFaceSources::begin_forces() {

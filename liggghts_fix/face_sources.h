@@ -37,8 +37,11 @@ class PfvFaceSources : protected Pointers {
 
   /// Whether `follow_grains` has anything to do.
   bool wants_grains() const;
-  /// Puts `extent` faces at the extremes of the grains, where the flow is; at the simulation box's sides until there are any.
+  /// Puts `extent` faces at the extremes of the grains, where the flow is; at the simulation box's sides until there are
+  /// any. Throws pfv::InputError where one is then beyond the opposite face of the box.
   void follow_grains(const PfvGrainTotals& grains);
+  /// For messages: where the `extent` faces are and what to do where they are beyond others; empty without any.
+  std::string followers() const;
 
   /// m; of a container's faces a number that changes with their place.
   const std::vector<double>& positions() const { return positions_; }
@@ -88,6 +91,8 @@ class PfvFaceSources : protected Pointers {
   void read_mesh(int number);
   void read_gliding(int number);
   void turn_outwards(const Eigen::Vector3d& middle);
+  double way_out(int number, const Eigen::Vector3d& inside) const;  ///< 1 or -1 for a shape's normal
+  std::vector<Eigen::Vector3d> outward_normals() const;             ///< of a container; 0 where unknown
 
   bool container_ = false;
   std::vector<std::string> names_;
@@ -105,6 +110,7 @@ class PfvFaceSources : protected Pointers {
   std::vector<pfv::ContainerFace> shapes_;  ///< of a container
   std::vector<pfv::MeshWall> parts_;        ///< the walls of meshes that have several or are round
   bool read_since_bound_ = false;
+  std::vector<Eigen::Vector3d> normals_before_;  ///< that pointed outwards when the walls were last bound; 0: unknown
   std::vector<double> outwards_;            ///< which way a shape's normal points: 1, -1, or 0 as long as unknown
 };
 

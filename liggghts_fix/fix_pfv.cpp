@@ -65,8 +65,13 @@ void FixPfv::post_create() {
   array_atom = per_atom_->array_atom;
 }
 
+/// A script may have removed it.
+bool FixPfv::has_per_atom() const {
+  return std::find(modify->fix, modify->fix + modify->nfix, static_cast<const Fix*>(per_atom_)) != modify->fix + modify->nfix;
+}
+
 void FixPfv::pre_delete(bool unfixflag) {
-  if (unfixflag && per_atom_) modify->delete_fix(per_atom_->id);
+  if (unfixflag && has_per_atom()) modify->delete_fix(per_atom_->id);
   per_atom_ = nullptr;
 }
 
@@ -74,6 +79,8 @@ void FixPfv::init() {
   check_environment();
   if (std::strcmp(update->integrate_style, "verlet") != 0)
     stop(FLERR, "needs run_style verlet");
+  if (!has_per_atom())
+    stop(FLERR, "keeps its forces in fix '" + std::string(id) + "_prop', which has been removed; leave that to `unfix " + id + "`");
   check_variables();
   check_other_fixes();
   check_contact_stress();
@@ -279,16 +286,10 @@ PfvLeftState FixPfv::state_of(const PfvGrainExchange& grains) {
   return left_state(packing, positions, places);
 }
 
-Eigen::Vector3d FixPfv::gravity() const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int i = 0; i < modify->nfix; ++i) {
-    auto* fix = dynamic_cast<FixGravity*>(modify->fix[i]);
-    if (!fix) continue;
-    Eigen::Vector3d one;
-    fix->get_gravity(one.data());
-    sum += one;
-  }
-  return sum;
+Eigen::Vector3d FixPfv::gravity() {
+  Eigen::Vector3d found;
+  everywhere([&] { found = PfvOtherFixes(lmp, *this).gravity(); });
+  return found;
 }
 
 void FixPfv::setup_pre_force(int vflag) { pre_force(vflag); }
@@ -380,7 +381,7 @@ void FixPfv::after_flow_call() {
     obstacles_.take_loads(grains_, flow_->forces());
     files_->write(*flow_, {grains_.packing(), grains_.unwrapped(), stresses}, update->ntimestep, ranks_);
     if (files_->history_due(update->ntimestep))
-      files_->write_history(history_row(*flow_, flow_.report(), stokes(), update->ntimestep, schedule_.taken()));
+      files_->write_history(history_row(*flow_, flow_.report(), of_grains(), update->ntimestep, schedule_.taken()));
   });
   grains_.scatter(ranks_.is_one() ? flow_->forces() : pfv::Forces{},
                   ranks_.is_one() ? schedule_.held() : nullptr,

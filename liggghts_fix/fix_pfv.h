@@ -109,7 +109,9 @@ class FixPfv : public Fix {
   void say_what_holds_the_fluid();
   void say_what_is_filled();
   std::int64_t hidden_or_outside() const;
-  Eigen::Vector3d gravity() const;
+  double solid_inside() const;
+  pfv::Container closed_container(const std::vector<pfv::ContainerFace>& faces) const;
+  Eigen::Vector3d gravity();
   void after_flow_call();
   void apply_forces();
   void push_meshes();
@@ -144,6 +146,8 @@ class FixPfv : public Fix {
   // outputs
   double quantity(int n);
   double last_quantity(int n);
+  bool has_per_atom() const;
+  PfvOfGrains of_grains();
   pfv::StokesNumbers stokes() const;  ///< of all ranks that hold the flow; collective among these
   void print_phases();
   Eigen::MatrixXd stresses_where_due();

@@ -18,7 +18,7 @@ namespace LAMMPS_NS {
 
 namespace {
 
-std::string of_grains(const pfv::StokesNumbers& stokes) {
+std::string text_of(const pfv::StokesNumbers& stokes) {
   if (!(stokes.largest > 0.0)) return {};
   char text[100];
   std::snprintf(text, sizeof text, "Stokes number of the grains: largest %.3g  mean %.3g\n", stokes.largest, stokes.mean);
@@ -74,6 +74,11 @@ pfv::StokesNumbers FixPfv::stokes() const {
   return {found.largest, sums[1] > 0.0 ? sums[0] / sums[1] : 0.0, sums[1]};
 }
 
+/// For the history. Where the flow is.
+PfvOfGrains FixPfv::of_grains() {
+  return {hidden_or_outside(), flow_.report().force_sum - obstacles_.force(), stokes()};
+}
+
 void FixPfv::post_run() {
   remember_state();
   on_flow([&] {
@@ -83,7 +88,7 @@ void FixPfv::post_run() {
 
 void FixPfv::print_phases() {
   std::string text = "\nFix pfv (id " + std::string(id) + ") since it began:\n" +
-                     units().relabelled(pfv::summary_of(flow_.report()) + of_grains(stokes())) + schedule_.summary();
+                     units().relabelled(pfv::summary_of(flow_.report()) + text_of(stokes())) + schedule_.summary();
   if (ranks_.dealt.times > 0)
     text += "  grains dealt to the ranks " + std::to_string(ranks_.dealt.times) + " times\n";
   if (!said_.citation && settings_.model == pfv::Model::pores) text += pfv::citation();

@@ -17,6 +17,15 @@
 
 namespace LAMMPS_NS {
 
+namespace {
+
+bool is_inside(const pfv::Container& container, const Eigen::Vector3d& place) {
+  return std::all_of(container.faces.begin(), container.faces.end(),
+                     [&](const pfv::ContainerFace& face) { return face.surface.distance(place) > 0.0; });
+}
+
+}  // namespace
+
 /// Evaluates the variables; of one that is missing, check_variables has told.
 void FixPfv::update_bound_numbers() {
   if (settings_.bindings.empty()) return;
@@ -78,6 +87,14 @@ Eigen::Vector3d FixPfv::cell_lengths_then() const {
   return lengths;
 }
 
+pfv::Container FixPfv::closed_container(const std::vector<pfv::ContainerFace>& faces) const {
+  try {
+    return pfv::container_of(faces);
+  } catch (const pfv::InputError& problem) {
+    throw pfv::InputError(problem.what() + faces_.followers());
+  }
+}
+
 /// Completes the container where the flow is, and the grains with the obstacles in it.
 void FixPfv::place_faces(pfv::Container& container) {
   follow_grains(grains_);
@@ -85,7 +102,7 @@ void FixPfv::place_faces(pfv::Container& container) {
     for (int number = 0; number < container.face_count(); ++number)
       container.faces[number].surface = faces_.surface(number);
     if (!flow_ || !pfv::take_bounds(container, flow_->container())) {
-      pfv::Container whole = pfv::container_of(container.faces);
+      pfv::Container whole = closed_container(container.faces);
       std::vector<char> may_be_idle;
       for (const PfvFaceSource& source : settings_.sources) may_be_idle.push_back(source.may_bound_nothing);
       pfv::refuse_idle_faces(whole, may_be_idle);
@@ -117,13 +134,8 @@ void FixPfv::use_mean_velocities_of_faces() {
 /// that grains will be poured into has none yet, and is left in peace. Where the flow is.
 void FixPfv::warn_of_empty_box() const {
   const pfv::Packing packing = grains_.grains();
-  const auto is_inside = [&](Eigen::Index k) {
-    return std::all_of(container_.faces.begin(), container_.faces.end(), [&](const pfv::ContainerFace& face) {
-      return face.surface.distance(packing.positions.col(k)) > 0.0;
-    });
-  };
   bool any = false;
-  for (Eigen::Index k = 0; k < packing.size() && !any; ++k) any = is_inside(k);
+  for (Eigen::Index k = 0; k < packing.size() && !any; ++k) any = is_inside(container_, packing.positions.col(k));
   const PfvGrainTotals grains = totals_of(packing, ranks_);
   if (grains.count == 0.0 || ranks_.any(any)) return;
   std::ostringstream text;
@@ -178,13 +190,20 @@ std::int64_t FixPfv::hidden_or_outside() const {
   const pfv::Packing packing = grains_.grains();
   const std::vector<int> hidden = flow_->hidden();
   std::int64_t count = 0;
-  for (Eigen::Index k = 0; k < packing.size(); ++k) {
-    const Eigen::Vector3d centre = packing.positions.col(k);
-    count += std::any_of(container_.faces.begin(), container_.faces.end(),
-                         [&](const pfv::ContainerFace& face) { return !(face.surface.distance(centre) > 0.0); }) ||
-             std::find(hidden.begin(), hidden.end(), k) != hidden.end();
-  }
+  for (Eigen::Index k = 0; k < packing.size(); ++k)
+    count += !is_inside(container_, packing.positions.col(k)) || std::find(hidden.begin(), hidden.end(), k) != hidden.end();
   return count;
+}
+
+/// Of the grains with their centre in it, m3, over all ranks. Along periodic axes all of them are.
+double FixPfv::solid_inside() const {
+  const pfv::Packing packing = grains_.grains();
+  Eigen::Matrix3Xd places = packing.positions;
+  cell_.wrap(places);
+  double cubes = 0.0;
+  for (Eigen::Index k = 0; k < packing.size(); ++k)
+    if (is_inside(container_, places.col(k))) cubes += std::pow(packing.radii[k], 3);
+  return ranks_.sum(4.0 / 3.0 * M_PI * cubes);
 }
 
 /// A line from which a wrong unit, a box beside the grains or one that is mostly empty is seen. Where the flow is.
@@ -206,7 +225,7 @@ void FixPfv::say_what_is_filled() {
                   "%s of %.4g m3, %.0f grains inside, %.0f outside, diameters %.4g to %.4g m, grains are %.3g %% of "
                   "the volume\n",
                   container_.is_box ? "flow box" : "container", volume, grains.count - outside, outside,
-                  2.0 * grains.smallest, 2.0 * grains.largest, 100.0 * grains.solid / volume);
+                  2.0 * grains.smallest, 2.0 * grains.largest, 100.0 * solid_inside() / volume);
   print("Fix pfv (id " + std::string(id) + "): " + units().relabelled(text));
   if (2.0 * grains.mean_radius > units().of_length(pfv::largest_usual_diameter))
     warn_of("the mean diameter of the grains is " + std::to_string(2.0 * grains.mean_radius) + " m; lengths are in " +

@@ -52,23 +52,22 @@ PfvGrainTotals totals_of(const pfv::Packing& packing, const PfvFlowRanks& ranks)
   PfvGrainTotals totals;
   const auto& centres = packing.positions;
   const auto& radii = packing.radii;
-  Eigen::Matrix<double, 6, 1> sums = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Matrix<double, 5, 1> sums = Eigen::Matrix<double, 5, 1>::Zero();
   Eigen::Matrix<double, 14, 1> largest;
   largest.setConstant(-std::numeric_limits<double>::infinity());
   if (packing.size() > 0) {
     const Eigen::Matrix3Xd reach = radii.transpose().replicate<3, 1>();
-    sums << static_cast<double>(packing.size()), centres.rowwise().sum(), radii.sum(), radii.array().cube().sum();
+    sums << static_cast<double>(packing.size()), centres.rowwise().sum(), radii.sum();
     largest << centres.rowwise().maxCoeff(), -centres.rowwise().minCoeff(), (centres + reach).rowwise().maxCoeff(),
         -(centres - reach).rowwise().minCoeff(), radii.maxCoeff(), -radii.minCoeff();
   }
-  ranks.add(sums.data(), 6);
+  ranks.add(sums.data(), 5);
   ranks.take_largest(largest.data(), 14);
   totals.count = sums[0];
   if (sums[0] > 0.0) {
     totals.mean = sums.segment<3>(1) / sums[0];
     totals.mean_radius = sums[4] / sums[0];
   }
-  totals.solid = 4.0 / 3.0 * M_PI * sums[5];
   totals.highest_centre = largest.segment<3>(0);
   totals.lowest_centre = -largest.segment<3>(3);
   totals.upper = largest.segment<3>(6);

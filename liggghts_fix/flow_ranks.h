@@ -59,7 +59,7 @@ class PfvFlowRanks {
 
 /// Of the grains of all ranks that hold the flow.
 struct PfvGrainTotals {
-  double count = 0.0, solid = 0.0;                     ///< solid: m³
+  double count = 0.0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();      ///< of the centres, m
   Eigen::Vector3d lowest_centre, highest_centre;       ///< m
   Eigen::Vector3d lower, upper;                        ///< how far the grains reach, m

@@ -57,7 +57,7 @@ void add_face(PfvNamedRow& row, const pfv::Container& container, int number, con
 
 }  // namespace
 
-PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, const pfv::StokesNumbers& stokes,
+PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, const PfvOfGrains& grains,
                         std::int64_t step, const PfvTaken& taken) {
   PfvNamedRow row;
   add(row, "step", static_cast<double>(step));
@@ -70,13 +70,13 @@ PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, c
   add(row, "mean_pressure", flow.mean_pressure());
   add(row, "porosity", report.porosity);
   add(row, "permeability", report.permeability);
-  add(row, "hidden", static_cast<double>(flow.hidden_or_outside()));
+  add(row, "hidden", static_cast<double>(grains.hidden));
   add(row, "stages", static_cast<double>(flow.stages()));
   add(row, "reynolds_largest", report.reynolds_largest);
   add(row, "reynolds_mean", report.reynolds_mean);
-  add(row, "stokes_largest", stokes.largest);
-  add(row, "stokes_mean", stokes.mean);
-  add_vector(row, "force", report.force_sum);
+  add(row, "stokes_largest", grains.stokes.largest);
+  add(row, "stokes_mean", grains.stokes.mean);
+  add_vector(row, "force", grains.force);
   for (std::size_t f = 0; f < report.faces.size(); ++f)
     add_face(row, flow.container(), static_cast<int>(f), report.faces[f]);
   for (const pfv::OpeningResult& opening : report.openings) {

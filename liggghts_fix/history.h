@@ -23,8 +23,15 @@ struct PfvNamedRow {
   std::vector<double> values;
 };
 
+/// Of the grains alone, where obstacles are spheres of the flow as well.
+struct PfvOfGrains {
+  std::int64_t hidden = 0;  ///< or outside
+  Eigen::Vector3d force;    ///< of the fluid on all of them, N
+  pfv::StokesNumbers stokes;
+};
+
 /// The flow after its last step: counts, balances, forces, then its faces and openings.
-PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, const pfv::StokesNumbers& stokes,
+PfvNamedRow history_row(const pfv::FlowModel& flow, const pfv::Report& report, const PfvOfGrains& grains,
                         std::int64_t step, const PfvTaken& taken);
 
 }  // namespace LAMMPS_NS

@@ -138,6 +138,12 @@ void PfvObstacles::push() const {
   }
 }
 
+Eigen::Vector3d PfvObstacles::force() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Held& held : held_) sum += held.load.force;
+  return sum;
+}
+
 double PfvObstacles::load(int component) const {
   const pfv::ObstacleLoad& load = held_[component / 6].load;
   return component % 6 < 3 ? load.force[component % 6] : load.moment[component % 6 - 3];

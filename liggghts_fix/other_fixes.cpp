@@ -3,8 +3,11 @@
 
 #include "private_member.h"
 
+#include "pfv/error.hpp"
+
 #include "atom.h"
 #include "fix.h"
+#include "fix_gravity.h"
 #include "fix_multisphere.h"
 #include "fix_setforce.h"
 #include "modify.h"
@@ -12,6 +15,8 @@
 #include <mpi.h>
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -48,6 +53,32 @@ bool leaves_forces_alone(const Fix& fix) {
                                                  "heat/gran/conduction"};
   return std::find(styles.begin(), styles.end(), style_of(fix)) != styles.end();
 }
+
+/// What acts on some grains of the flow: which of the fixes gravity, and their sum.
+struct Gravity {
+  std::size_t fixes = 0;  ///< a bit for each
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+};
+
+Gravity sum_of(const std::vector<FixGravity*>& all, std::size_t bits) {
+  Gravity of{bits, Eigen::Vector3d::Zero()};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!(bits >> k & 1)) continue;
+    Eigen::Vector3d one;
+    all[k]->get_gravity(one.data());
+    of.sum += one;
+  }
+  return of;
+}
+
+std::string names_of(const std::vector<FixGravity*>& all, const Gravity& one) {
+  std::string names;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (one.fixes >> k & 1) names += (names.empty() ? "" : " and ") + name_of(*all[k]);
+  return names;
+}
+
+constexpr std::size_t most_fixes_gravity = 16;
 
 }  // namespace
 
@@ -116,6 +147,32 @@ bool PfvOtherFixes::moves_bodies_of_flow(const Fix& fix) const {
     any = (atom->mask[i] & flow_.groupbit) && bodies->belongs_to(i) >= 0;
   MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
   return any != 0;
+}
+
+Eigen::Vector3d PfvOtherFixes::gravity() const {
+  std::vector<FixGravity*> all;
+  for (int i = 0; i < modify->nfix; ++i)
+    if (auto* fix = dynamic_cast<FixGravity*>(modify->fix[i])) all.push_back(fix);
+  if (all.size() < 2) return sum_of(all, 1).sum;
+  if (all.size() > most_fixes_gravity) throw pfv::InputError("there are more than 16 fixes gravity; give the sum of some");
+  std::vector<int> occurs(std::size_t{1} << all.size(), 0);  // by the fixes of a grain
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & flow_.groupbit)) continue;
+    std::size_t bits = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) bits |= std::size_t{(atom->mask[i] & all[k]->groupbit) != 0} << k;
+    occurs[bits] = 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, occurs.data(), static_cast<int>(occurs.size()), MPI_INT, MPI_MAX, world);
+  std::optional<Gravity> found;  // without a grain all of them, of grains without any fix none
+  for (std::size_t bits = 1; bits < occurs.size(); ++bits) {
+    if (!occurs[bits]) continue;
+    const Gravity one = sum_of(all, bits);
+    if (!found) found = one;
+    if (!((one.sum - found->sum).norm() <= 1e-12 * found->sum.norm()))
+      throw pfv::InputError("some of its grains have the gravity of " + names_of(all, *found) + ", others that of " +
+                            names_of(all, one) + "; the fluid has one: let fix gravity act on all grains alike");
+  }
+  return found ? found->sum : sum_of(all, occurs.size() - 1).sum;
 }
 
 bool PfvOtherFixes::share_grains_with(const Fix& other) const {

@@ -5,6 +5,7 @@
 
 #include "pointers.h"
 
+#include <Eigen/Core>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -39,6 +40,10 @@ class PfvOtherFixes : protected Pointers {
   PfvOfOthers seen(bool long_steps) const;
 
   bool share_grains_with(const class Fix& other) const;  ///< collective
+
+  /// m/s2, that of the fluid: what the fixes gravity of a grain add up to, which is the same for all grains that have
+  /// any. Throws InputError with two of them where it is not. Collective where there are several such fixes.
+  Eigen::Vector3d gravity() const;
 
  private:
   PfvGroups groups() const;

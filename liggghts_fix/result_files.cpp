@@ -115,9 +115,28 @@ void PfvRowFile::write_row(const PfvNamedRow& row) {
   if (!file_) throw pfv::FileError("'" + path_ + "' cannot be written; is the disk full?");
 }
 
+namespace {
+
+void refuse_one_file_for_two(const PfvSettings& settings) {
+  std::map<std::string, std::string> words;  // by the file that each writes
+  const auto take = [&](const char* word, const auto& file) {
+    if (!file) return;
+    const auto [other, is_new] = words.emplace(std::filesystem::absolute(file->path).lexically_normal(), word);
+    if (!is_new) throw pfv::InputError(other->second + " and " + word + " write to one file, '" + file->path + "'; give each its own");
+  };
+  take("output", settings.fields);
+  take("profile", settings.profile);
+  take("flux_profile", settings.flux_profile);
+  take("sensors", settings.sensors);
+  take("history", settings.history);
+}
+
+}  // namespace
+
 PfvResultFiles::PfvResultFiles(const PfvSettings& settings, bool are_written)
     : are_written_(are_written), fields_(settings.fields), profile_(settings.profile),
       flux_profile_(settings.flux_profile), sensors_(settings.sensors) {
+  refuse_one_file_for_two(settings);
   if (settings.culprits && are_written) pfv::require_folder_of(*settings.culprits);
   if (fields_) {
     if (are_written) pfv::require_folder_of(fields_->path);
@@ -146,25 +165,39 @@ void PfvResultFiles::write(const pfv::FlowModel& flow, const PfvWrittenGrains& g
 
 namespace {
 
-std::string file_of(const std::string& stem, std::int64_t step, const std::string& what, const char* ending) {
-  return stem + "_" + what + "_" + std::to_string(step) + ending;
+/// How the files of these steps are called; after a reset_timestep one may come again: 10, then 10_2.
+std::vector<std::string> labels_of(const std::vector<PfvWrittenStep>& written) {
+  std::map<std::int64_t, int> times;
+  std::vector<std::string> labels;
+  for (const PfvWrittenStep& one : written) {
+    const int time = ++times[one.step];
+    labels.push_back(std::to_string(one.step) + (time > 1 ? "_" + std::to_string(time) : ""));
+  }
+  return labels;
 }
 
-}  // namespace
+std::string file_of(const std::string& stem, const std::string& label, const std::string& what, const char* ending) {
+  return stem + "_" + what + "_" + label + ending;
+}
 
 /// The file of a step that has been written, as the collection names it: that of one rank, or the head of pieces. A
 /// run may have been continued on another number of ranks.
-std::string PfvResultFiles::head_of(const std::string& stem, const PfvWrittenStep& one, const std::string& what) const {
-  const char* ending = std::filesystem::exists(file_of(stem, one.step, what, ".pvtu")) ? ".pvtu" : ".vtu";
-  return file_name_of(file_of(stem, one.step, what, ending));
+std::string head_of(const std::string& stem, const std::string& label, const std::string& what) {
+  const char* ending = std::filesystem::exists(file_of(stem, label, what, ".pvtu")) ? ".pvtu" : ".vtu";
+  return file_name_of(file_of(stem, label, what, ending));
 }
+
+}  // namespace
 
 void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const PfvWrittenGrains& grains, std::int64_t step,
                                   const PfvFlowRanks& ranks) {
   const pfv::Packing& packing = grains.packing;
   const std::string stem = fields_->path.substr(0, fields_->path.rfind(".pvd")), fluid = flow.field_name();
+  written_.push_back({step, flow.time()});
+  const std::vector<std::string> labels = labels_of(written_);
+  const std::string& label = labels.back();
   const auto write = [&](const std::string& what, const pfv::FieldGrid& grid) {
-    const std::string alone = file_of(stem, step, what, ".vtu"), head = file_of(stem, step, what, ".pvtu");
+    const std::string alone = file_of(stem, label, what, ".vtu"), head = file_of(stem, label, what, ".pvtu");
     if (ranks.are_all()) pfv::write_fields(head, grid, *ranks.library());
     else pfv::write_fields(alone, grid);
     if (are_written_) std::filesystem::remove(ranks.are_all() ? alone : head);  // an earlier run's
@@ -177,18 +210,17 @@ void PfvResultFiles::write_fields(const pfv::FlowModel& flow, const PfvWrittenGr
   }
   write("grains", pfv::grid_of_spheres(packing, flow.forces(), sphere_fields(flow, grains)));
   const std::vector<pfv::FaceResult>& faces = flow.faces();
-  written_.push_back({step, flow.time()});
   if (!are_written_) return;
   const pfv::FieldGrid walls = pfv::grid_of_walls(flow.container(), faces);
-  const std::string of_walls = file_of(stem, step, "walls", ".vtu");
+  const std::string of_walls = file_of(stem, label, "walls", ".vtu");
   if (walls.types.empty()) std::filesystem::remove(of_walls);  // an earlier run's
   else pfv::write_fields(of_walls, walls);
   std::vector<pfv::CollectionEntry> entries;
-  for (const PfvWrittenStep& one : written_) {
-    entries.push_back({one.time, 0, head_of(stem, one, fluid)});
-    entries.push_back({one.time, 1, head_of(stem, one, "grains")});
-    const std::string drawn = file_of(stem, one.step, "walls", ".vtu");
-    if (std::filesystem::exists(drawn)) entries.push_back({one.time, 2, file_name_of(drawn)});
+  for (std::size_t k = 0; k < written_.size(); ++k) {
+    entries.push_back({written_[k].time, 0, head_of(stem, labels[k], fluid)});
+    entries.push_back({written_[k].time, 1, head_of(stem, labels[k], "grains")});
+    const std::string drawn = file_of(stem, labels[k], "walls", ".vtu");
+    if (std::filesystem::exists(drawn)) entries.push_back({written_[k].time, 2, file_name_of(drawn)});
   }
   pfv::write_collection(fields_->path, entries);
 }

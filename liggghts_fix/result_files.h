@@ -92,7 +92,6 @@ class PfvResultFiles {
  private:
   void write_fields(const pfv::FlowModel& flow, const PfvWrittenGrains& grains, std::int64_t step,
                     const PfvFlowRanks& ranks);
-  std::string head_of(const std::string& stem, const PfvWrittenStep& one, const std::string& what) const;
   PfvNamedRow profile_row(const pfv::FlowModel& flow) const;
   PfvNamedRow flux_row(const pfv::FlowModel& flow) const;
   PfvNamedRow sensor_row(const pfv::FlowModel& flow) const;

@@ -121,6 +121,29 @@ class Containers(CoupledTest):
                      f"fix flow all pfv viscosity 0.01 container face side wall shell {bottom} face top mesh bent\n"
                      "run 0\n", "container", "it is open")
 
+    def test_a_wall_keeps_its_side_when_the_grains_have_passed_it(self):
+        """A gate whose contacts are taken away between runs."""
+        write_plate(self.folder / "gate.stl", [(0, 0, 0), (EDGE, 0, 0), (EDGE, EDGE, 0), (0, EDGE, 0)])
+        planes = " ".join(f"face {name} plane {place} {normal}" for name, place, normal in (
+            ("x0", "0 0 0", "1 0 0"), ("x1", f"{EDGE} 0 0", "-1 0 0"), ("y0", "0 0 0", "0 1 0"),
+            ("y1", f"0 {EDGE} 0", "0 -1 0"), ("top", f"0 0 {EDGE}", "0 0 -1 pressure 0")))
+        said = self.liggghts(HEAD + "fix gate all mesh/surface file gate.stl type 1\n"
+                             f"fix flow all pfv viscosity 0.01 container {planes} face gate mesh gate\nrun 0\n"
+                             f"change_box all z final -1.0 1.0\ndisplace_atoms all move 0 0 {-0.9 * EDGE}\nrun 0\n")
+        box = f"container of {EDGE**3:.4g} m3"
+        self.assertEqual(said.count(box), 2)
+        inside = [int(line.split(" grains inside")[0].split()[-1]) for line in said.splitlines() if box in line]
+        self.assertEqual(inside[0], 125)
+        self.assertLess(inside[1], 63)
+
+    def test_grains_that_have_left_under_an_extent_are_said_to_have(self):
+        sides = "face x0 plane 0 0 0 1 0 0 face x1 plane 0.1 0 0 -1 0 0 face y0 plane 0 0 0 0 1 0 face y1 plane 0 0.1 0 0 -1 0"
+        for words in (faces(zlo="pressure 1", zhi="extent pressure 0"),
+                      f"container {sides} face floor plane 0 0 0 0 0 1 pressure 1 face zhi extent z hi pressure 0"):
+            self.refused(HEAD + f"fix flow all pfv viscosity 0.01 {words}\nrun 0\nchange_box all z final -1.0 1.0\n"
+                         f"displace_atoms all move 0 0 {-2 * EDGE}\nrun 0\n",
+                         "leave no room between them", "face zhi", "where the grains leave")
+
     def test_a_cylinder_under_a_leaning_roof_is_of_flats(self):
         write_data(self.folder, in_pipe(packing(8)))
         said = self.liggghts(HEAD + PIPE + f"fix flow all pfv viscosity 0.01 container face side wall shell face bottom wall "

@@ -125,6 +125,22 @@ class Forces(CoupledTest):
                 lift = 1000 * 4 / 3 * math.pi * row[3]**3 * 9.81
                 self.assertAlmostEqual(row[9], factor * lift, delta=1e-12 * lift)
 
+    def test_gravity_is_that_of_a_grain_however_many_fixes_give_it(self):
+        """A fix for each group is no more gravity than one for all; fixes that add up in each grain are."""
+        groups = "group a id <= 40\ngroup b subtract all a\n"
+        flow = f"fix flow all pfv {FLOW} density 1000\n{dump('d.dump')}run 0\n"
+        found = []
+        for gravity in ("fix g all gravity 9 vector 0 0 -1\n",
+                        "fix ga a gravity 9 vector 0 0 -1\nfix gb b gravity 9 vector 0 0 -1\n",
+                        "fix ga a gravity 9 vector 0 0 -1\n",  # the others have none of their own, and the same lift
+                        "fix g1 all gravity 4 vector 0 0 -1\nfix g2 all gravity 5 vector 0 0 -1\n"):
+            self.liggghts("include in.packing\n" + groups + gravity + flow)
+            found.append(forces(read_dump(self.folder / "d.dump")[0]))
+        for other in found[1:]:
+            self.assertEqual(other, found[0])
+        self.refused("include in.packing\n" + groups + "fix ga a gravity 9 vector 0 0 -1\n"
+                     "fix gb b gravity 8 vector 0 0 -1\n" + flow, "fix gravity 'ga'", "fix gravity 'gb'", "the fluid has one")
+
     def test_thermo_output(self):
         self.liggghts("include in.packing\n"
                       f"fix flow all pfv {FLOW}\n"

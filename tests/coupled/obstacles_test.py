@@ -52,6 +52,15 @@ class Obstacles(CoupledTest):
             about = arm[1] * force[2] - arm[2] * force[1] + row["flow[14]"]
             self.assertAlmostEqual(row["pad[4]"], about, delta=1e-9 * abs(row["flow[12]"]))
 
+    def test_the_history_tells_of_the_grains_as_thermo_does(self):
+        self.moved(PUSH, "history 5 h.csv", "run 10\n")
+        header, *rows = [line.split(",") for line in (self.folder / "h.csv").read_text().splitlines()]
+        last = dict(zip(header, map(lambda text: float(text or "nan"), rows[-1])))
+        grains = forces(read_dump(self.folder / "moved.dump")[10]).values()
+        self.assertEqual(last["hidden"], self.rows()[-1]["flow[8]"])
+        for axis in range(3):
+            self.assertAlmostEqual(last["force_" + "xyz"[axis]], sum(force[axis] for force in grains), delta=1e-9)
+
     def test_a_paddle_that_turns_feels_a_moment(self):
         _, rows = self.moved(TURN, "torques yes")
         self.assertLess(rows[-1]["flow[16]"], 0.0)

@@ -41,6 +41,20 @@ class Output(CoupledTest):
         for _, _, file in entries:
             self.assertGreater((self.folder / "post" / file).stat().st_size, 1000)
 
+    def test_a_step_that_comes_again_gets_files_of_its_own(self):
+        self.liggghts(HEAD + f"fix flow all pfv {FLOW} output 10 post/flow.pvd\nrun 10\nreset_timestep 0\nrun 10\n"
+                      "write_restart file.restart\n")
+        self.liggghts(restarted_head() + f"fix flow all pfv {FLOW} output 10 post/flow.pvd\nrun 10\n")
+        pores = [(round(time / 1e-5), file) for time, part, file in self.collection() if part == "0"]
+        self.assertEqual(pores, [(0, "flow_pores_0.vtu"), (10, "flow_pores_10.vtu"), (10, "flow_pores_0_2.vtu"),
+                                 (20, "flow_pores_10_2.vtu"), (30, "flow_pores_20.vtu")])
+        for _, file in pores:
+            self.assertTrue((self.folder / "post" / file).exists())
+
+    def test_two_records_in_one_file_are_refused(self):
+        self.refused(HEAD + f"fix flow all pfv {FLOW} history 1 h.csv sensors 1 post/../h.csv 0 0 0\nrun 0\n",
+                     "sensors and history write to one file")
+
     def test_grains_hold_the_forces_of_the_run(self):
         """Read back with VTK's own reader."""
         try:

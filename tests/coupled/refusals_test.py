@@ -34,6 +34,9 @@ class Refusals(CoupledTest):
     def test_no_number(self):
         self.refuse("viscosity high " + faces(), "viscosity", "'high'", after="")
 
+    def test_its_forces_are_removed(self):
+        self.refuse(FLOW, "fix 'flow_prop', which has been removed", after="unfix flow_prop\nrun 0\n")
+
     def test_number_with_a_tail(self):
         self.refuse("viscosity 0.01Pa " + faces(), "viscosity", "'0.01Pa'", after="")
 

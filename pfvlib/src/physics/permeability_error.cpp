@@ -49,7 +49,7 @@ double size_ratio(const PoreNetwork& network, const Spheres& spheres, int t) {
 }
 
 std::string percent(const char* what, double share, double checked) {
-  char text[120];
+  char text[160];
   std::snprintf(text, sizeof text, "%s %.2g %% (compared up to %.2g %%)", what, 100.0 * share,
                 100.0 * checked);
   return text;
@@ -61,11 +61,11 @@ std::vector<std::string> outside_range(const Means& means, double solid_fraction
     outside.push_back("the solid fraction is " + std::to_string(solid_fraction) +
                       " (compared from 0.0005 to 0.74)");
   if (means.hidden > largest_hidden_share)
-    outside.push_back(percent("overlaps hide, of the solid surface,", means.hidden,
-                              largest_hidden_share));
+    outside.push_back(percent("overlaps hide, of the solid surface beside the flow (a mean over its dissipation),",
+                              means.hidden, largest_hidden_share));
   if (means.walls > largest_wall_share)
-    outside.push_back(percent("no-slip walls make up, of the solid surface,", means.walls,
-                              largest_wall_share));
+    outside.push_back(percent("no-slip walls make up, of the solid surface beside the flow (a mean over its "
+                              "dissipation),", means.walls, largest_wall_share));
   if (means.unlike > notable_ratio)
     outside.push_back(percent("throats of spheres with a size ratio above 10 take, of the flow's "
                               "dissipation,", means.unlike, notable_ratio));
