@@ -24,6 +24,7 @@
 #include <mpi.h>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 namespace LAMMPS_NS {
@@ -130,6 +131,9 @@ const PfvUnits& FixPfv::units() const {
 void FixPfv::stop(const char* file, int line, const std::string& problem) {
   static char version[] = "3.8";
   universe->version = version;
+  // mpirun ends the other ranks as soon as one has stopped, the first perhaps with the message still in its buffer
+  for (FILE* output : {screen, logfile})
+    if (output) std::setvbuf(output, nullptr, _IONBF, 0);
   error->fix_error(file, line, this, units().relabelled(problem).c_str());
 }
 
