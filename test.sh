@@ -31,6 +31,10 @@ if [ "${1:-}" = long ]; then
   cmake --build "$root/build-sanitize"
   "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
   UBSAN_OPTIONS=halt_on_error=1 "$root/build-sanitize/bin/fuzz" --count 1000 --seed 1
+  for ranks in 2 4; do  # leaks: MPI keeps what it has until the program ends
+    ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 mpirun --allow-run-as-root --oversubscribe \
+      --mca mpi_yield_when_idle 1 -n "$ranks" "$root/build-sanitize/bin/ranks_tests" --gtest_brief=1
+  done
   logs=$(mktemp -d)
   echo "reports of the runs: $logs"
   # endurance: what the address sanitizer keeps back is not the memory that it measures

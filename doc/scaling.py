@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of doc/scaling.md:  doc/scaling.py [solve] [coupled] [million]
+"""The tables of doc/scaling.md:  doc/scaling.py [solve] [coupled] [runs] [million]
 
 `pfv solve` of dense packings on several ranks, and on one from 25 000 grains on; 50 coupled steps of LIGGGHTS on one and
-several ranks; all of it without a word. With `million` up to a million grains, which takes 9 GB. Every packing is made of
+several ranks; three small coupled runs to their end, and how far they differ (tests/coupled/coupled_runs.py); all of it
+without a word. With `million` up to a million grains, which takes 9 GB. Every packing is made of
 mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some minutes;
 `coupled million` 20.
 """
@@ -17,6 +18,8 @@ import tempfile
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "tests/coupled"))
+from coupled_runs import Runs
 PAGE = ROOT / "doc/scaling.md"
 PFV, MAKE, LIGGGHTS = (ROOT / "build/bin" / name for name in ("pfv", "pfv_dense_packing", "liggghts-pfv"))
 MPIRUN = [os.environ.get("PFV_MPIRUN", "mpirun"), "--allow-run-as-root", "--oversubscribe", "--mca",
@@ -187,6 +190,28 @@ def coupled(packings, sizes):
                   "LIGGGHTS' own step, s", "the run in all, s"], rows)
 
 
+ORDERS = (1, 2, 3, 4)  # of the grains, beside their own
+
+
+def number(value):
+    return f"{value:.0e}" if value else "0"
+
+
+def runs(folder):
+    """Observables of small coupled runs, and by which part of them other runs differ at most."""
+    of = Runs(folder)
+    rows = []
+    for name in ("oedometer", "boiling", "settling"):
+        first = of.observe(name)
+        others = {"orders": [of.observe(name, order=order) for order in ORDERS],
+                  "solver": [of.observe(name, solver="supernodal")],
+                  "2": [of.observe(name, ranks=2)], "4": [of.observe(name, ranks=4)]}
+        for what, value in first.items():
+            apart = [max(abs(run[what] - value) for run in group) / abs(value) for group in others.values()]
+            rows.append([f"{name}: {what}", f"{value:.5g}", *map(number, apart)])
+    return table(["what is observed", "one rank", "four other orders of the grains", "the kept factor", "2 ranks", "4 ranks"], rows)
+
+
 def replace(name, text):
     page = PAGE.read_text()
     begin, end = f"<!-- {name}: made by doc/scaling.py -->\n", "\n<!-- end -->"
@@ -205,13 +230,15 @@ def memory_of_few(folder):
 
 def main():
     words = set(sys.argv[1:])
-    if words - {"solve", "coupled", "million"}:
+    if words - {"solve", "coupled", "runs", "million"}:
         sys.exit(__doc__)
     million = MILLION if "million" in words else {}
-    parts = words & {"solve", "coupled"} or {"solve", "coupled"}
+    parts = words - {"million"} or {"solve", "coupled", "runs"}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        packings = Packings(folder)
+        if "runs" in parts:
+            replace("runs", runs(folder))
+        packings = Packings(folder) if parts & {"solve", "coupled"} else None
         if "solve" in parts:
             empty = memory_of_few(folder)
             replace("ranks", by_ranks(packings, empty))

@@ -449,7 +449,6 @@ void FixPfv::write_restart(FILE* file) {
     if (flow_) place_faces(container_);
     if (auto state = flow_.state_on_new_network(container_, grains_.packing(), flow_step()))
       record.flow = std::move(*state);
-    if (ranks_.are_all()) record.flow.pore_pressures.clear();  // an incompressible fluid has no use for them
     if (flow_ && since_.grains.tags.empty()) since_.grains = grains_.snapshot();
     if (settings_.steps.couple_every > 1 || settings_.steps.couple_error || cell_.changes())
       record.last_grains = gathered(since_.grains, ranks_);

@@ -13,6 +13,13 @@ from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest
 MPIRUN = [os.environ.get("PFV_MPIRUN", "mpirun"), "--allow-run-as-root", "--oversubscribe", "--mca",
           "mpi_yield_when_idle", "1", "--mca", "orte_create_session_dirs", "1"]
 
+# runs a program and says the last that was seen of its largest address space
+WATCHED = """"$@" > /dev/null &
+while [ -r /proc/$!/status ] && text=$(< /proc/$!/status) && [[ $text == *VmPeak* ]]; do last=$text; sleep 0.02; done 2> /dev/null
+wait $! || exit
+last=${last#*VmPeak:}; echo "VmPeak: ${last%%kB*}"
+"""
+
 
 class Ranks(CommandTest):
     def on_ranks(self, count, *arguments):
@@ -70,6 +77,34 @@ class Ranks(CommandTest):
         self.assertEqual(len(own), 1, done.stderr)
         self.assertIn("is not inside the box", own[0])
         self.assertFalse((self.folder / "all.csv").exists())
+
+    def test_a_rank_without_memory_ends_all(self):
+        """It may have what two ranks need for a small packing, and a third of what its part of a large one takes."""
+        options = [*UNIT_BOX, *THROUGH_FLOW, "--forces", "all.csv"]
+        edge = 22
+        places = (numpy.indices((edge, edge, edge)).reshape(3, -1).T + 0.5) / edge
+        places += numpy.random.default_rng(1).uniform(-0.02, 0.02, places.shape) / edge
+        with open(self.folder / "large.csv", "w") as file:
+            file.write("id,x,y,z,radius\n")
+            file.writelines(f"{k},{x},{y},{z},{0.45 / edge}\n" for k, (x, y, z) in enumerate(places, 1))
+        small = self.peak_of_addresses(["--packing", DENSE, *options])
+        large = self.peak_of_addresses(["--packing", "large.csv", *options])
+        self.assertGreater(large, 1.05 * small)
+        (self.folder / "all.csv").unlink()
+        program = [os.environ["PFV_COMMAND"], "solve", "--packing", "large.csv", *map(str, options)]
+        limited = ["bash", "-c", f'ulimit -v {small + (large - small) // 3}; exec "$@"', "bash", *program]
+        done = subprocess.run([*MPIRUN, "-n", "1", *program, ":", "-n", "1", *limited], cwd=self.folder,
+                              capture_output=True, text=True, timeout=300)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("memory", done.stderr)
+        self.assertFalse((self.folder / "all.csv").exists())
+
+    def peak_of_addresses(self, arguments):
+        """Of the larger of two ranks, kB."""
+        command = [*MPIRUN, "-n", "2", "bash", "-c", WATCHED, "bash", os.environ["PFV_COMMAND"], "solve", *map(str, arguments)]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return max(int(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("VmPeak:"))
 
     def test_what_one_rank_alone_can_do_is_refused(self):
         for options, words in ((["--solver", "supernodal"], "the solver supernodal runs on one rank"),

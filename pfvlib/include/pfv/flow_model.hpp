@@ -33,7 +33,8 @@ struct FlowState {
   double time = 0.0;                       ///< s
   double strain = 0.0;                     ///< accumulated since the last triangulation
   std::int64_t retriangulations = 0;       ///< triangulations after the first
-  std::vector<double> pore_pressures;      ///< Pa, in the order of the pores of the present network
+  /// Pa, in the order of the pores of the present network; of several ranks all on the first, in the order of one rank.
+  std::vector<double> pore_pressures;
   double volume_debt = 0.0;                ///< m³ that implicit steps still owe the pores
   double fluid_at_start = 0.0, fluid_came_in = 0.0;  ///< m³, for the fluid's balance; 0: it begins anew
 };
@@ -143,7 +144,7 @@ class FlowModel {
 
   virtual double time() const = 0;    ///< s, that was advanced
   virtual double strain() const = 0;  ///< pore strain since the last rebuild
-  virtual FlowState state() const = 0;
+  virtual FlowState state() const = 0;  ///< collective on several ranks
   /// Takes up a stored state. The next step throws InputError where its packing gives another number of pores
   /// than there are `pore_pressures`; none is a fluid that begins anew.
   virtual void set_state(FlowState state) = 0;

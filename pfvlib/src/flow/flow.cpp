@@ -9,6 +9,7 @@
 #include "step/forces.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
+#include "step/shared_pressures.hpp"
 #include "work/phase_clock.hpp"
 
 namespace pfv {
@@ -224,18 +225,18 @@ void Flow::set_retriangulation(StrainMeasure measure, double strain) {
 FlowState Flow::state() const {
   const FluidMemory& memory = parts_->memory;
   const Eigen::VectorXd& pressures = memory.pressures;
+  const bool of_all = parts_->ranks && memory.pressed && parts_->keeper.has_network();
   return {memory.time,
           strain(),
           retriangulations(),
-          std::vector<double>(pressures.data(), pressures.data() + pressures.size()),
+          of_all ? pressures_of_all(parts_->keeper.network(), pressures)
+                 : std::vector<double>(pressures.data(), pressures.data() + pressures.size()),
           memory.volume_debt,
           memory.account.at_start,
           memory.account.came_in};
 }
 
 void Flow::set_state(FlowState state) {
-  if (parts_->ranks && parts_->fluid.bulk_modulus)
-    throw InputError("the state of a compressible fluid cannot be set on several ranks: run it on one rank");
   FluidMemory& memory = parts_->memory;
   memory.time = state.time;
   parts_->keeper.restore(state.strain, state.retriangulations);

@@ -73,11 +73,17 @@ std::uint64_t hilbert_number(std::array<std::uint32_t, 3> x) {
   return spread(x[0] ^ gray) << 2 | spread(x[1] ^ gray) << 1 | spread(x[2] ^ gray);
 }
 
-std::vector<Vertex> along_curve(const Spheres& spheres) {
+std::vector<std::uint64_t> curve_numbers(const Spheres& spheres) {
   const double per_metre = (1u << curve_bits) / spheres.edges.maxCoeff();
+  std::vector<std::uint64_t> numbers(spheres.size());
+  for (int k = 0; k < spheres.size(); ++k) numbers[k] = hilbert_number(grid_place(spheres, k, per_metre));
+  return numbers;
+}
+
+std::vector<Vertex> along_curve(const Spheres& spheres) {
+  const std::vector<std::uint64_t> numbers = curve_numbers(spheres);
   std::vector<std::pair<std::uint64_t, Vertex>> numbered(spheres.size());
-  for (int k = 0; k < spheres.size(); ++k)
-    numbered[k] = {hilbert_number(grid_place(spheres, k, per_metre)), k};
+  for (int k = 0; k < spheres.size(); ++k) numbered[k] = {numbers[k], k};
   std::sort(numbered.begin(), numbered.end(), [&](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : precedes(a.second, b.second, spheres);
   });

@@ -15,6 +15,9 @@ namespace pfv {
 /// Number of a place of a grid of 2^16 places an axis along a Hilbert curve (Skilling 2004).
 std::uint64_t hilbert_number(std::array<std::uint32_t, 3> place);
 
+/// Of each sphere the number of its place along a Hilbert curve whose grid of cubes fits the box's longest edge.
+std::vector<std::uint64_t> curve_numbers(const Spheres& spheres);
+
 /// The spheres along a Hilbert curve whose grid of cubes fits the box's longest edge (what stands outside
 /// counts as at the border); those of one cube by `precedes`. Places that are near stand near in memory.
 std::vector<Vertex> along_curve(const Spheres& spheres);

@@ -72,7 +72,7 @@ double traffic(const BuiltNetwork& built, const Solution& solution) {
     for (const int pore : network.throat_pores[t])
       if (built.share.owns_pore(pore)) sum += built.conductances.value[t] * std::abs(solution.relative_pressures[pore]);
   if (built.kept.compressible())
-    sum += built.kept.storage.dot(solution.pressures.cwiseAbs() +
+    sum += built.kept.storage->dot(solution.pressures.cwiseAbs() +
                                   solution.previous_pressures.cwiseAbs());
   return built.share.sum(sum);
 }

@@ -51,7 +51,7 @@ void add_balances(Report& report, const BuiltNetwork& built, const Solution& sol
   report.outflow = totals.outflow;
   report.volume_rate_sum = built.share.sum(solution.rates.sum());
   if (built.kept.compressible())
-    report.storage_rate = built.share.sum(built.kept.storage.dot(solution.pressures - solution.previous_pressures +
+    report.storage_rate = built.share.sum(built.kept.storage->dot(solution.pressures - solution.previous_pressures +
                                                                  balance.correction));
   report.mass_error = mass_error(totals, report.volume_rate_sum, report.storage_rate,
                                  traffic(built, solution));

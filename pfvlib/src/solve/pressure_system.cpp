@@ -171,7 +171,7 @@ void impose_pressures(const PoreNetwork& network, const PoreBoundaries& boundari
 }
 
 PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
-                        const Unknowns& unknowns, const Eigen::VectorXd& storage, const Share& share,
+                        const Unknowns& unknowns, const std::optional<Eigen::VectorXd>& storage, const Share& share,
                         const RowShare* rows) {
   PressureSystem system;
   std::vector<double> diagonal(unknowns.count, 0.0);
@@ -191,9 +191,9 @@ PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& c
     add_row(p, i, q, j);
     add_row(q, j, p, i);
   }
-  if (storage.size() > 0) {
+  if (storage) {
     for (int pore = 0; pore < network.pores(); ++pore)
-      if (unknowns.of_pore[pore] >= 0) diagonal[unknowns.of_pore[pore]] += storage[pore];
+      if (unknowns.of_pore[pore] >= 0) diagonal[unknowns.of_pore[pore]] += (*storage)[pore];
   } else {
     system.isolated = rows ? find_isolated(network, conductances, unknowns, share, *rows)
                            : find_isolated(network, conductances, unknowns);

@@ -8,6 +8,7 @@
 #include "solve/linear_solver.hpp"
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace pfv {
@@ -57,11 +58,11 @@ struct PressureSystem {
 
 struct RowShare;
 
-/// Assembles G. `storage` (m³/Pa, one entry a pore, or empty) is V^f / (K_f dt) of a compressible
+/// Assembles G. `storage` (m³/Pa, one entry a pore, or none) is V^f / (K_f dt) of a compressible
 /// fluid; it goes on the diagonal and leaves nothing isolated. On several ranks (`rows`) the rows of own unknowns; those
 /// of borders hold what own pores give.
 PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
-                        const Unknowns& unknowns, const Eigen::VectorXd& storage, const Share& share = {},
+                        const Unknowns& unknowns, const std::optional<Eigen::VectorXd>& storage, const Share& share = {},
                         const RowShare* rows = nullptr);
 
 /// b = sources of each pore (m³/s) + inflow of the flux boundaries + what the imposed pressures

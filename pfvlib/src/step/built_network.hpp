@@ -32,11 +32,11 @@ struct KeptSystem {
   PressureSystem system;
   std::unique_ptr<LinearSolver> solver;         ///< null until the first factorisation
   std::unique_ptr<LinearSolver> former_solver;  ///< of the network before: its memory serves again
-  Eigen::VectorXd storage;  ///< V^f / (K_f dt) of each pore, m³/Pa; no entries for an incompressible fluid
+  std::optional<Eigen::VectorXd> storage;  ///< V^f / (K_f dt) of each pore, m³/Pa; none for an incompressible fluid
   double storage_dt = 0.0;  ///< time step whose storage term is in the factor
   std::optional<bool> loses_digits;  ///< whether its solves need refinement; unknown before the first
 
-  bool compressible() const { return storage.size() > 0; }
+  bool compressible() const { return storage.has_value(); }
 };
 
 /// From where to where each cell reaches along an axis, m.

@@ -43,7 +43,7 @@ Eigen::VectorXd gross_sources(const BuiltNetwork& built, const Solution& solutio
       for (const int pore : network.throat_pores[t]) gross[pore] += rate;
     }
   if (built.kept.compressible())
-    gross.array() += built.kept.storage.array() *
+    gross.array() += built.kept.storage->array() *
                      (solution.previous_pressures.array() - solution.reference).abs();
   return gross;
 }
@@ -63,7 +63,7 @@ Eigen::VectorXd pore_inflows(const BuiltNetwork& built, const Solution& solution
   const PoreNetwork& network = built.network;
   Eigen::VectorXd inflow = solution.rates;
   if (built.kept.compressible())
-    inflow.array() += built.kept.storage.array() *
+    inflow.array() += built.kept.storage->array() *
                       (solution.pressures.array() - solution.previous_pressures.array() +
                        correction.array());
   for (int t = 0; t < network.throats(); ++t) {

@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 #include "problem/container_geometry.hpp"
+#include "step/shared_pressures.hpp"
 
 #include <string>
 
@@ -17,22 +18,39 @@ double compressed_in(const BuiltNetwork& built, const Fluid& fluid,
   return built.share.sum(storage_volumes(built.throats).dot(pressures)) / *fluid.bulk_modulus;
 }
 
-void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
-                     const Fluid& fluid) {
-  const int pores = now.network.pores();
-  if (now.share.ranks) {
-    now.share.together([&] {
-      if (memory.pressed)
-        throw InputError("a compressible fluid cannot be carried over to a new network on several ranks: run it on one rank");
-    });
-    memory.pressures.setZero(fluid.bulk_modulus ? pores : 0);
-    return;
-  }
-  if (!memory.restored.empty() && static_cast<int>(memory.restored.size()) != pores)
-    throw InputError("the state that was set has " + std::to_string(memory.restored.size()) +
+void refuse_other_pores(std::size_t given, std::size_t pores) {
+  if (given != pores)
+    throw InputError("the state that was set has " + std::to_string(given) +
                      " pore pressures, and the network of this packing has " + std::to_string(pores) +
                      " pores: take states right after a new network (Flow::rebuild before the step), restart "
-                     "with its packing, container and settings, or set a state without pressures, from which the fluid begins at 0 Pa");
+                     "with its packing, container and settings, or set a state without pressures, from which the "
+                     "fluid begins at 0 Pa");
+}
+
+void carry_on_ranks(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now, const Fluid& fluid) {
+  const BuiltNetwork* old = before.network.get();
+  const bool unlike = old ? old->network.pores() != memory.pressures.size() : memory.pressures.size() > 0;
+  const bool carries = memory.pressed && !now.share.any(unlike);
+  if (memory.is_restored(now.share)) {
+    const std::vector<std::size_t> numbers = numbers_among_all(now);
+    now.share.together([&] {
+      if (now.share.ranks->own() == 0) refuse_other_pores(memory.restored.size(), numbers.size());
+    });
+    memory.pressures = pressures_from_all(now, numbers, memory.restored);
+  } else if (carries && fluid.bulk_modulus) {
+    memory.pressures = carried_on_ranks(old, memory.pressures, now);
+  } else {
+    memory.pressures.setZero(fluid.bulk_modulus ? now.network.pores() : 0);
+  }
+  memory.pressed = fluid.bulk_modulus.has_value();
+  memory.restored.clear();
+}
+
+void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
+                     const Fluid& fluid) {
+  if (now.share.ranks) return carry_on_ranks(memory, before, now, fluid);
+  const int pores = now.network.pores();
+  if (!memory.restored.empty()) refuse_other_pores(memory.restored.size(), static_cast<std::size_t>(pores));
   if (!memory.restored.empty())
     memory.pressures = Eigen::Map<const Eigen::VectorXd>(memory.restored.data(), pores);
   else if (before.network && memory.pressures.size() > 0 &&
@@ -83,7 +101,7 @@ double space_around(const BuiltNetwork& built, double volume) {
 
 void carry_over(FluidMemory& memory, const Replaced& before, const BuiltNetwork& now,
                 const Problem& problem, double swept) {
-  const bool restored = !memory.restored.empty();
+  const bool restored = memory.is_restored(now.share);
   carry_pressures(memory, before, now, problem.fluid);
   if (restored && memory.account.open) return;  // the state is that of these grains: there is nothing to settle
   settle_account(memory, before, now, problem, swept);
@@ -102,7 +120,7 @@ void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid
   memory.account.came_in += grown;
   memory.account.ahead = solution.stages > 1 || solution.implicit ? grown : 0.0;
   if (built.kept.compressible())
-    memory.account.came_in += solution.dt * built.share.sum(built.kept.storage.dot(solution.pressures -
+    memory.account.came_in += solution.dt * built.share.sum(built.kept.storage->dot(solution.pressures -
                                                                                    solution.previous_pressures));
   if (fluid.bulk_modulus) memory.pressures = solution.pressures;
   memory.pressed = fluid.bulk_modulus.has_value();

@@ -14,10 +14,13 @@ struct FluidMemory {
   double time = 0.0;  ///< s, that was advanced
   /// Of the present pores at the last step, Pa; none but for a compressible fluid.
   Eigen::VectorXd pressures;
-  bool pressed = false;  ///< those of a step, on all ranks alike
-  std::vector<double> restored;  ///< pressures of a restart, for the network that the next packing gives
+  bool pressed = false;  ///< there are some, on any rank
+  /// Pressures of a restart, for the network that the next packing gives; of several ranks' those of the first count.
+  std::vector<double> restored;
   FluidAccount account;
   double volume_debt = 0.0;  ///< what the box has grown by beyond the rates of implicit steps, m³
+
+  bool is_restored(const Share& share) const { return share.any(!restored.empty()); }
 };
 
 /// Takes the memory to a new network: pressures of a compressible fluid, and the account. Grains that came or

@@ -97,7 +97,7 @@ Eigen::VectorXd sources_of(const BuiltNetwork& built, const Solution& solution) 
   Eigen::VectorXd sources = -solution.rates;
   if (built.kept.compressible())
     sources.array() +=
-        built.kept.storage.array() * (solution.previous_pressures.array() - solution.reference);
+        built.kept.storage->array() * (solution.previous_pressures.array() - solution.reference);
   const Eigen::Vector3d& gradient = solution.container.pressure_gradient;
   if (!gradient.isZero(0.0))
     sources += gradient_sources(built.network, built.conductances.value, gradient);

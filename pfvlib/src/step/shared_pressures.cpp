@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "step/shared_pressures.hpp"
+
+#include "network/canonical_order.hpp"
+#include "network/pore_network.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace pfv {
+
+namespace {
+
+/// The vertices of a cell by the ids of their spheres, ascending, walls first.
+using CellName = std::array<std::int64_t, 4>;
+
+struct NamedPressure {
+  CellName name;
+  double pressure;
+};
+
+bool before(const NamedPressure& a, const NamedPressure& b) { return a.name < b.name; }
+
+CellName name_of_cell(const BuiltNetwork& built, int cell) {
+  CellName name;
+  for (int i = 0; i < 4; ++i) {
+    const Vertex vertex = built.network.cell_vertices[cell][i];
+    name[i] = is_wall(vertex) ? std::numeric_limits<std::int64_t>::min() + wall_number(vertex)
+                              : built.vertices.ids[vertex];
+  }
+  std::sort(name.begin(), name.end());
+  return name;
+}
+
+/// The rank that is told of a cell of this name.
+int teller(const CellName& name, int ranks) {
+  std::uint64_t mixed = 0;
+  for (const std::int64_t id : name) mixed = (mixed ^ static_cast<std::uint64_t>(id)) * 0x9e3779b97f4a7c15u;
+  return static_cast<int>((mixed >> 32) % static_cast<std::uint64_t>(ranks));
+}
+
+/// What an asked rank knows; found: 1 or 0, or how far a place lies outside a cell, m.
+struct Answer {
+  double found, pressure;
+};
+
+/// Cells of own pores of the old network, told to those who will be asked for them, ascending by their names.
+std::vector<NamedPressure> told_cells(const BuiltNetwork* old, const Eigen::VectorXd& values, const Ranks& ranks) {
+  std::vector<Ranks::Bytes> to(ranks.count());
+  for (int c = 0; old && c < old->network.cells(); ++c) {
+    const int pore = old->network.cell_pore[c];
+    if (!old->share.own_pores[pore]) continue;
+    const NamedPressure cell{name_of_cell(*old, c), values[pore]};
+    append(to[teller(cell.name, ranks.count())], &cell, 1);
+  }
+  std::vector<NamedPressure> told;
+  for (const Ranks::Bytes& bytes : ranks.hand_over(to))
+    for (const NamedPressure& cell : values_in<NamedPressure>(bytes)) told.push_back(cell);
+  std::stable_sort(told.begin(), told.end(), before);
+  return told;
+}
+
+/// Asks and answers: `to` as handed over; each rank's answers, one a question.
+template <class Question, class Reply>
+std::vector<std::vector<Answer>> answers_of(const std::vector<Ranks::Bytes>& to, const Ranks& ranks,
+                                            const Reply& reply) {
+  std::vector<Ranks::Bytes> replies(ranks.count());
+  const std::vector<Ranks::Bytes> from = ranks.hand_over(to);
+  for (int r = 0; r < ranks.count(); ++r)
+    for (const Question& question : values_in<Question>(from[r])) {
+      const Answer answer = reply(question);
+      append(replies[r], &answer, 1);
+    }
+  std::vector<std::vector<Answer>> answers;
+  for (const Ranks::Bytes& bytes : ranks.hand_over(replies)) answers.push_back(values_in<Answer>(bytes));
+  return answers;
+}
+
+/// Of each own pore of `now` the sum of the pressures of its cells that were there before, and how many there are.
+void sum_of_survivors(const std::vector<NamedPressure>& told, const BuiltNetwork& now, Eigen::VectorXd& sum,
+                      Eigen::VectorXi& count) {
+  const Ranks& ranks = *now.share.ranks;
+  std::vector<Ranks::Bytes> to(ranks.count());
+  std::vector<int> asked(now.network.cells(), -1);
+  for (int c = 0; c < now.network.cells(); ++c) {
+    if (!now.share.own_pores[now.network.cell_pore[c]]) continue;
+    const CellName name = name_of_cell(now, c);
+    asked[c] = teller(name, ranks.count());
+    append(to[asked[c]], &name, 1);
+  }
+  const auto answers = answers_of<CellName>(to, ranks, [&](const CellName& name) -> Answer {
+    const auto found = std::lower_bound(told.begin(), told.end(), NamedPressure{name, 0.0}, before);
+    if (found == told.end() || found->name != name) return {0.0, 0.0};
+    return {1.0, found->pressure};
+  });
+  std::vector<std::size_t> next(ranks.count(), 0);
+  for (int c = 0; c < now.network.cells(); ++c) {
+    if (asked[c] < 0) continue;
+    const Answer& answer = answers[asked[c]][next[asked[c]]++];
+    if (answer.found == 0.0) continue;
+    sum[now.network.cell_pore[c]] += answer.pressure;
+    ++count[now.network.cell_pore[c]];
+  }
+}
+
+/// Finds old pressures at places.
+class OldPlaces {
+ public:
+  OldPlaces(const BuiltNetwork* old, const Eigen::VectorXd& values) : old_(old), values_(values) {
+    if (!old_ || old_->network.cells() == 0) return;
+    for (const auto& cell : old_->network.cell_vertices)
+      for (const Vertex v : cell) is_wall(v) ? reach(old_->vertices.wall(v)) : reach(old_->vertices.centres.col(v));
+  }
+
+  /// How far outside a cell of a whole pore the place lies, m, and the pressure there; infinite where none is near.
+  Answer at(const Eigen::Vector3d& absolute) {
+    constexpr double nowhere = std::numeric_limits<double>::infinity();
+    if (!old_) return {nowhere, 0.0};
+    const Eigen::Vector3d place =
+        (absolute - old_->network.origin).cwiseMax(0.0).cwiseMin(old_->vertices.edges);
+    if ((place.array() < lower_.array()).any() || (place.array() > upper_.array()).any()) return {nowhere, 0.0};
+    cell_ = locate(old_->network, old_->vertices, place, cell_);
+    const int pore = old_->network.cell_pore[cell_];
+    if (!old_->share.whole_pores[pore]) return {nowhere, 0.0};
+    return {std::max(0.0, distance_outside(old_->network, old_->vertices, place, cell_)), values_[pore]};
+  }
+
+ private:
+  void reach(const Eigen::Vector3d& centre) {
+    lower_ = lower_.cwiseMin(centre);
+    upper_ = upper_.cwiseMax(centre);
+  }
+  /// As far as the wall stands.
+  void reach(const WallSurface& wall) {
+    const Eigen::Vector3d& edges = old_->vertices.edges;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (wall.axis >= 0 && wall.axis != axis) continue;
+      if (wall.axis < 0 || wall.surface.normal[axis] < 0.0) lower_[axis] = std::min(lower_[axis], 0.0);
+      if (wall.axis < 0 || wall.surface.normal[axis] > 0.0) upper_[axis] = std::max(upper_[axis], edges[axis]);
+    }
+  }
+
+  const BuiltNetwork* old_;
+  const Eigen::VectorXd& values_;
+  Eigen::Vector3d lower_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), upper_ = -lower_;
+  int cell_ = 0;
+};
+
+/// Own pores of which nothing was there before take what is found at their places, here or elsewhere.
+void fill_from_places(const BuiltNetwork* old, const Eigen::VectorXd& old_values, const BuiltNetwork& now,
+                      const Eigen::VectorXi& count, Eigen::VectorXd& values) {
+  const Ranks& ranks = *now.share.ranks;
+  OldPlaces places(old, old_values);
+  std::vector<int> elsewhere;
+  Ranks::Bytes questions;
+  for (int p = 0; p < now.network.pores(); ++p) {
+    if (!now.share.own_pores[p] || count[p] > 0) continue;
+    const Eigen::Vector3d place = now.network.origin + now.network.pore_centres.col(p);
+    const Answer own = places.at(place);
+    values[p] = own.pressure;
+    if (own.found == 0.0) continue;
+    elsewhere.push_back(p);
+    append(questions, place.data(), 3);
+  }
+  const auto answers = answers_of<std::array<double, 3>>(
+      std::vector<Ranks::Bytes>(ranks.count(), questions), ranks,
+      [&](const std::array<double, 3>& place) { return places.at(Eigen::Map<const Eigen::Vector3d>(place.data())); });
+  for (std::size_t i = 0; i < elsewhere.size(); ++i) {
+    Answer best{std::numeric_limits<double>::infinity(), 0.0};
+    for (const std::vector<Answer>& of_rank : answers)
+      if (of_rank[i].found < best.found) best = of_rank[i];
+    values[elsewhere[i]] = best.pressure;
+  }
+}
+
+/// A pore's place among all: the vertices of its first cell along the curve, walls last.
+using PoreRank = std::array<std::pair<std::uint64_t, std::int64_t>, 4>;
+
+std::vector<PoreRank> own_pores_in_order(const BuiltNetwork& built) {
+  const std::vector<std::uint64_t> numbers = curve_numbers(built.vertices);
+  std::vector<PoreRank> ranked;
+  int next = 0;
+  for (int c = 0; c < built.network.cells(); ++c) {
+    const int pore = built.network.cell_pore[c];
+    if (pore != next) continue;
+    ++next;
+    if (!built.share.own_pores[pore]) continue;
+    PoreRank rank;
+    for (int i = 0; i < 4; ++i) {
+      const Vertex v = built.network.cell_vertices[c][i];
+      rank[i] = is_wall(v) ? std::pair(std::numeric_limits<std::uint64_t>::max(), std::int64_t(wall_number(v)))
+                           : std::pair(numbers[v], built.vertices.ids[v]);
+    }
+    std::sort(rank.begin(), rank.end());
+    ranked.push_back(rank);
+  }
+  return ranked;
+}
+
+}  // namespace
+
+Eigen::VectorXd carried_on_ranks(const BuiltNetwork* old, const Eigen::VectorXd& old_values, const BuiltNetwork& now) {
+  const Share& share = now.share;
+  const int pores = now.network.pores();
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(pores);
+  Eigen::VectorXi count = Eigen::VectorXi::Zero(pores);
+  sum_of_survivors(told_cells(old, old_values, *share.ranks), now, values, count);
+  for (int p = 0; p < pores; ++p)
+    if (count[p] > 0) values[p] /= count[p];
+  fill_from_places(old, old_values, now, count, values);
+  // the sum of V^f p is what the storage term conserves (thesis eq. 4.8 with compressibility)
+  const Eigen::VectorXd after = storage_volumes(now.throats);
+  Eigen::VectorXd sums(3);
+  sums << (old ? storage_volumes(old->throats).dot(old_values) : 0.0), after.dot(values), after.sum();
+  share.add(sums);
+  if (sums[2] > 0.0) values.array() += (sums[0] - sums[1]) / sums[2];
+  share.pores.refresh(*share.ranks, values);
+  return values;
+}
+
+std::vector<std::size_t> numbers_among_all(const BuiltNetwork& built) {
+  const Ranks& ranks = *built.share.ranks;
+  const std::vector<PoreRank> own = own_pores_in_order(built);
+  std::vector<Ranks::Bytes> to(ranks.count());
+  append(to[0], own.data(), own.size());
+  std::vector<PoreRank> all;
+  for (const Ranks::Bytes& bytes : ranks.hand_over(to))
+    for (const PoreRank& rank : values_in<PoreRank>(bytes)) all.push_back(rank);
+  std::vector<std::size_t> sorted(all.size()), numbers(all.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) { return all[a] < all[b]; });
+  for (std::size_t i = 0; i < sorted.size(); ++i) numbers[sorted[i]] = i;
+  return numbers;
+}
+
+std::vector<double> pressures_of_all(const BuiltNetwork& built, const Eigen::VectorXd& values) {
+  const Ranks& ranks = *built.share.ranks;
+  const std::vector<std::size_t> numbers = numbers_among_all(built);
+  std::vector<double> own;
+  for (int p = 0; p < built.network.pores(); ++p)
+    if (built.share.own_pores[p]) own.push_back(values[p]);
+  std::vector<Ranks::Bytes> to(ranks.count());
+  append(to[0], own.data(), own.size());
+  std::vector<double> all(numbers.size());
+  std::size_t next = 0;
+  for (const Ranks::Bytes& bytes : ranks.hand_over(to))
+    for (const double value : values_in<double>(bytes)) all[numbers[next++]] = value;
+  return all;
+}
+
+Eigen::VectorXd pressures_from_all(const BuiltNetwork& built, const std::vector<std::size_t>& numbers,
+                                   const std::vector<double>& all) {
+  const Share& share = built.share;
+  const Ranks& ranks = *share.ranks;
+  const double mine = static_cast<double>(std::count(share.own_pores.begin(), share.own_pores.end(), 1));
+  std::vector<Ranks::Bytes> to(ranks.count());
+  std::size_t next = 0;
+  Ranks::Bytes message;
+  append(message, &mine, 1);
+  const std::vector<Ranks::Bytes> pores = ranks.gather(message);
+  for (int r = 0; ranks.own() == 0 && r < ranks.count(); ++r)
+    for (double left = values_in<double>(pores[r])[0]; left > 0.0; --left) append(to[r], &all[numbers[next++]], 1);
+  const std::vector<double> own = values_in<double>(ranks.hand_over(to)[0]);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(built.network.pores());
+  next = 0;
+  for (int p = 0; p < built.network.pores(); ++p)
+    if (share.own_pores[p]) values[p] = own[next++];
+  share.pores.refresh(ranks, values);
+  return values;
+}
+
+}  // namespace pfv
