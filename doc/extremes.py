@@ -154,6 +154,11 @@ def main():
 
 Every grain force, pore pressure and number of the report is finite in all of them.
 
+Grains must fit between the faces: those of the slender boxes do. Where two opposite faces cut a grain, the gap that is left
+around it is no pore between spheres, K may come out as 0 or next to it, and the report says so (`outside_range`, with
+the share of such grains; `permeability_error` is null where a rule closed throats beside them). A box of an edge beyond 1e-30 to
+1e30 m is refused.
+
 ## Random adversarial packings
 
     build/bin/fuzz --count 10000 --seed 1

@@ -247,7 +247,7 @@ std::string wrapped(const std::string& text) {
 
 std::string help_of(const Setting& setting) {
   const std::string unit = setting.unit;
-  return wrapped(setting.help + (unit.empty() ? "" : ", " + unit) + " (default " +
+  return wrapped(setting.help + setting.lacks + (unit.empty() ? "" : ", " + unit) + " (default " +
                  setting.text(Settings{}) + ")");
 }
 

@@ -111,7 +111,7 @@ std::string help_of(const std::vector<std::string>& names) {
     const Setting& setting = *setting_named(name);
     const std::string unit = setting.unit;
     help += "\n    " + name + " = " + setting.values + (unit.empty() ? "" : " (" + unit + ")") + ": " + setting.help +
-            " (default " + setting.text(Settings{}) + ")";
+            setting.lacks + " (default " + setting.text(Settings{}) + ")";
   }
   return help;
 }

@@ -82,5 +82,17 @@ TEST(FlowAverages, MeanStressIsTheMeanPressureUpToTheViscousPart) {
   }
 }
 
+TEST(FlowAverages, NothingCrossesASealedWall) {
+  const auto packing = random_packing(60, 0.05, 0.12, 4);
+  pfv::Flow flow(upward_box(pfv::Wall::symmetry), viscosity_one());
+  flow.evaluate(packing.view());
+  const pfv::PoreNetwork& network = flow.network();
+  ASSERT_LE(network.pore_centres.topRows<2>().minCoeff(), 0.0) << "no centre lies beyond";
+  for (const int axis : {0, 1})
+    for (const double place : {0.0, 1.0}) EXPECT_EQ(flow.plane_flux(axis, place), 0.0);
+  EXPECT_NEAR(flow.plane_flux(2, 0.0), flow.report().inflow, 1e-12 * flow.report().inflow);
+  EXPECT_NEAR(flow.plane_flux(2, 1.0), flow.report().inflow, 1e-12 * flow.report().inflow);
+}
+
 }  // namespace
 }  // namespace flow_averages_test

@@ -317,5 +317,46 @@ TEST_F(PackingFiles, WhatIsNotReadIsRefusedWithItsCause) {
                pfv::InputError);
 }
 
+TEST_F(PackingFiles, RadiiWinOverDiametersThatAgreeAndNoOthers) {
+  expect_two(pfv::read_packing_file(file("d,id,x,y,z,r\n0.1,7,0.1,0.2,0.3,0.05\n0.2,9,0.6,0.7,0.8,0.1\n")));
+  expect_two(pfv::read_packing_file(file("id,x,y,z,radius,diameter\n7,0.1,0.2,0.3,0.05,0.1\n9,0.6,0.7,0.8,0.1,0.20001\n")));
+  for (const char* names : {"id,x,y,z,r,d", "id,x,y,z,radius,diameter", "id,x,y,z,radii,diam"}) {
+    const std::string path = file(std::string(names) + "\n7,0.1,0.2,0.3,0.05,0.1\n9,0.6,0.7,0.8,0.1,0.02\n");
+    try {
+      pfv::read_packing_file(path);
+      ADD_FAILURE() << names;
+    } catch (const pfv::InputError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(":3: radius is '0.1' and diameter is '0.02'"), std::string::npos) << message;
+    }
+  }
+}
+
+std::string snapshot_of(int step, const std::string& names, const std::string& values) {
+  return "ITEM: TIMESTEP\n" + std::to_string(step) +
+         "\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\nITEM: ATOMS " + names + '\n' + values + '\n';
+}
+
+TEST_F(PackingFiles, VariablesOfADumpAreNoVelocities) {
+  const std::string names = "id x y z radius v_x v_y v_z", values = "1 0.5 0.5 0.5 0.1 7 8 9";
+  const pfv::PackingFile none = pfv::read_packing_file(file(snapshot_of(5, names, values)));
+  EXPECT_EQ(none.packing.velocities.cols(), 0);
+  ASSERT_EQ(none.remarks.size(), 1u);
+  EXPECT_NE(none.remarks[0].find("v_x"), std::string::npos);
+  const pfv::PackingFile both = pfv::read_packing_file(file(snapshot_of(5, names + " vx vy vz", values + " 1 2 3")));
+  EXPECT_EQ(both.packing.velocities.col(0), Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_TRUE(both.remarks.empty());
+}
+
+TEST_F(PackingFiles, OfAStepThatADumpHasTwiceTheLastIsTaken) {
+  pfv::PackingChoice choice;
+  choice.snapshot = "5";
+  const std::string names = "id x y z radius";
+  const pfv::PackingFile found = pfv::read_packing_file(
+      file(snapshot_of(5, names, "1 0.5 0.5 0.5 0.1") + snapshot_of(5, names, "1 0.5 0.5 0.5 0.2")), choice);
+  EXPECT_EQ(found.packing.radii[0], 0.2);
+  EXPECT_NE(found.remarks.back().find("2 times"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace packing_file_test

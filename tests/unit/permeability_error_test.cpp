@@ -106,10 +106,37 @@ TEST(PermeabilityError, CountsTheDissipationOfDegenerateThroats) {
   const pfv::PermeabilityError error =
       pfv::permeability_error(s.network, s.throats, s.spheres, ConductanceLaw::open_throat, 1.0,
                               conductances, dissipation, 0.5);
-  EXPECT_NEAR(error.degenerate_share, 0.25, 1e-12);
-  EXPECT_NEAR(std::log1p(error.relative), 0.75 * 0.055 + 0.25 * 0.5, 1e-9);
+  EXPECT_NEAR(error.degenerate_share.value(), 0.25, 1e-12);
+  EXPECT_NEAR(std::log1p(error.relative.value()), 0.75 * 0.055 + 0.25 * 0.5, 1e-9);
   ASSERT_EQ(error.outside_range.size(), 1u);
   EXPECT_NE(error.outside_range[0].find("degenerate throats"), std::string::npos);
+}
+
+TEST(PermeabilityError, IsUnknownWhereGrainsDoNotFitBetweenTheFaces) {
+  pfv::Box box = pressure_box(pfv::Face::xlo, 1.0, pfv::Face::xhi, 0.0, pfv::Wall::symmetry);
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) spheres.push_back({0.125 + 0.25 * i, 0.125 + 0.25 * j, 0.01, j == 0 ? 0.009 : 0.1});
+  box.upper[2] = 0.02;
+  pfv::Flow flow(box, viscosity_one());
+  const pfv::PackingArrays packing = packing_of(spheres);
+  flow.evaluate(packing.view());
+  const pfv::Report report = flow.report();
+  ASSERT_FALSE(report.outside_range.empty());
+  EXPECT_NE(report.outside_range.back().find("two opposite faces make up, of all grains, 75 %"), std::string::npos)
+      << report.outside_range.back();
+  EXPECT_FALSE(report.permeability_error) << *report.permeability_error << ' ' << *report.permeability;
+}
+
+TEST(PermeabilityError, IsAbsentWhereNothingFlows) {
+  std::vector<Sphere> spheres;  // a layer that closes the box
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) spheres.push_back({0.125 + 0.25 * i, 0.125 + 0.25 * j, 0.5, 0.2});
+  pfv::Flow flow(upward_box(pfv::Wall::symmetry), viscosity_one());
+  const pfv::PackingArrays packing = packing_of(spheres);
+  flow.evaluate(packing.view());
+  EXPECT_EQ(flow.report().permeability.value(), 0.0);
+  EXPECT_FALSE(flow.report().permeability_error);
 }
 
 }  // namespace

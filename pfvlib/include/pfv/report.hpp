@@ -82,8 +82,8 @@ struct Report {
   std::optional<double> fluid_volume, fluid_came_in, fluid_balance_error;
   std::optional<double> permeability;
   std::optional<Eigen::Matrix3d> permeability_tensor;  ///< m², periodic boxes; 0 along other axes
-  /// Of the permeability, or of the tensor without one: Stokes flow is expected within a factor of
-  /// 1 + this. Absent without a permeability.
+  /// Of the permeability, or of the tensor without one: Stokes flow is expected within a factor of 1 + this. Absent without
+  /// one, where nothing flows, and where grains are cut by two opposite faces and a rule closed throats between them.
   std::optional<double> permeability_error;
   std::optional<double> degenerate_share;  ///< of the dissipation, in throats that a rule set
   std::vector<std::string> outside_range;  ///< why the estimate may not hold; none: it was checked

@@ -64,6 +64,7 @@ struct Setting {
   std::function<void(Settings&, Words&)> read;
   std::function<std::string(const Settings&)> text;  ///< of its present value
   std::function<void(const Settings&)> check;        ///< throws InputError where that is out of range
+  std::string lacks;  ///< what its help says of this build alone
 };
 
 const std::vector<Setting>& all_settings();

@@ -63,17 +63,21 @@ std::string names_of(const std::vector<Snapshot>& snapshots) {
   return text;
 }
 
-/// Throws InputError where there is none of this name.
+bool is_of(const Snapshot& snapshot, const std::optional<std::int64_t>& step, const std::optional<double>& time) {
+  if (step && snapshot.step == step) return true;
+  return time && snapshot.time && std::abs(*snapshot.time - *time) <= 1e-9 * std::abs(*time);
+}
+
+/// The last of this name, as a run that goes on from a restart file appends a step again. Throws InputError where there
+/// is none.
 const Snapshot& chosen(const std::string& path, const std::vector<Snapshot>& snapshots, const std::string& name) {
   if (name == "last") return snapshots.back();
   const std::string time_word = "time=";
   const bool by_time = starts_with(name, time_word);
   const auto time = by_time ? finite_number(name.substr(time_word.size())) : std::nullopt;
   const auto step = by_time ? std::nullopt : integer(name);
-  for (const Snapshot& snapshot : snapshots) {
-    if (step && snapshot.step == step) return snapshot;
-    if (time && snapshot.time && std::abs(*snapshot.time - *time) <= 1e-9 * std::abs(*time)) return snapshot;
-  }
+  for (auto snapshot = snapshots.rbegin(); snapshot != snapshots.rend(); ++snapshot)
+    if (is_of(*snapshot, step, time)) return *snapshot;
   if (step && *step >= 1 && *step <= static_cast<std::int64_t>(snapshots.size()))
     return snapshots[static_cast<std::size_t>(*step) - 1];
   throw InputError(path + ": there is no snapshot " + detail::quoted(name) + ": it has " + names_of(snapshots) +
@@ -168,6 +172,12 @@ void make_plain(PackingArrays& packing, Places places, const std::optional<Packi
   }
 }
 
+bool names_a_variable(const Words& names) {
+  return std::any_of(names.begin(), names.end(), [](const std::string_view name) {
+    return name == "v_x" || name == "v_y" || name == "v_z";
+  });
+}
+
 /// All of a snapshot; `text` ends with it.
 PackingFile read_snapshot(const std::string& path, std::string_view text, const Snapshot& snapshot) {
   const auto lines_before = static_cast<std::size_t>(
@@ -187,7 +197,7 @@ PackingFile read_snapshot(const std::string& path, std::string_view text, const 
     if (atoms < 0) lines.fail("no ITEM: NUMBER OF ATOMS before this line: write the dump anew");
     Words names;
     split_words(lines.line().substr(heading.size()), names);
-    const Columns columns = find_columns(lines, names);
+    const Columns columns = find_columns(lines, names, Naming::dump);
     const SphereTable table = read_atoms(lines, columns, atoms, own.size());
     if (lines.next_filled()) {
       if (starts_with(item, lines.line()) || starts_with(lines.line(), item)) fail_cut_off(lines, "in its first line");
@@ -197,6 +207,9 @@ PackingFile read_snapshot(const std::string& path, std::string_view text, const 
       lines.fail("the dump ends inside this line: its last number may be cut off; write the dump to its end");
     file.packing = table.arrays(path);
     make_plain(file.packing, columns.places, file.bounds, path);
+    if (!columns.velocities() && names_a_variable(names))
+      file.remarks.push_back("v_x, v_y, v_z are variables of the script, not velocities, which would be vx, vy, vz: there "
+                             "are none");
     if (!table.has_ids()) file.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
     return file;
   }
@@ -228,6 +241,12 @@ PackingFile read_dump(const std::string& path, std::string_view text, const Pack
   PackingFile file = read_snapshot(path, text.substr(0, snapshot.end), snapshot);
   file.remarks.push_back("the snapshot is that of step " + std::to_string(snapshot.step.value_or(0)) + ", number " +
                          std::to_string(&snapshot - snapshots.data() + 1) + " of " + std::to_string(snapshots.size()));
+  const auto same = std::count_if(snapshots.begin(), snapshots.end(), [&](const Snapshot& other) {
+    return snapshot.step && other.step == snapshot.step;
+  });
+  if (same > 1)
+    file.remarks.push_back("the dump has that step " + std::to_string(same) +
+                           " times; a number counted from 1 chooses another of them");
   return file;
 }
 

@@ -38,10 +38,11 @@ std::string phases(const Report& done) {
 
 /// Only while all grains are at rest.
 std::string permeability(const Report& done) {
-  if (!done.permeability || !done.permeability_error) return {};
-  std::string text =
-      line("permeability %.6g m2  estimated error %.2g %%  in degenerate throats %.2g %%\n",
-           *done.permeability, 100.0 * *done.permeability_error, 100.0 * *done.degenerate_share);
+  if (!done.permeability || (!done.degenerate_share && done.outside_range.empty())) return {};
+  std::string text = line("permeability %.6g m2", *done.permeability);
+  if (done.permeability_error) text += line("  estimated error %.2g %%", 100.0 * *done.permeability_error);
+  if (done.degenerate_share) text += line("  in degenerate throats %.2g %%", 100.0 * *done.degenerate_share);
+  text += '\n';
   for (const std::string& reason : done.outside_range)
     text += "WARNING: the permeability's estimated error may not hold: " + reason + "\n";
   return text;

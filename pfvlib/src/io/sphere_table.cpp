@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <initializer_list>
 #include <utility>
 
@@ -54,14 +55,13 @@ void find_other_places(Columns& columns, const std::vector<std::string>& names) 
   }
 }
 
-void find_radius(Columns& columns, const std::vector<std::string>& names) {
-  if (columns.place[radius] >= 0) return;
+/// After the radii under any name.
+void find_diameters(Columns& columns, const std::vector<std::string>& names) {
   for (const char* name : {"diameter", "d", "diam"})
-    if (const int place = place_of(names, name); place >= 0) {
-      columns.place[radius] = place;
-      columns.diameters = true;
-      return;
-    }
+    if (columns.diameter < 0) columns.diameter = place_of(names, name);
+  if (columns.place[radius] >= 0 || columns.diameter < 0) return;
+  std::swap(columns.place[radius], columns.diameter);
+  columns.diameters = true;
 }
 
 void require_all(const TextLines& lines, const Columns& columns) {
@@ -98,7 +98,7 @@ std::string plain_name(std::string_view name) {
   return plain;
 }
 
-Columns find_columns(const TextLines& lines, const Words& names) {
+Columns find_columns(const TextLines& lines, const Words& names, Naming naming) {
   Columns columns;
   columns.place.fill(-1);
   columns.fields = names.size();
@@ -110,12 +110,11 @@ Columns find_columns(const TextLines& lines, const Words& names) {
       lines.fail(std::string("column ") + column_names[column] + " is named twice: keep one of them");
   }
   if (columns.place[x] < 0 && columns.place[y] < 0 && columns.place[z] < 0) find_other_places(columns, plain);
-  for (int column = 0; column < column_count; ++column) {
-    if (column == radius) find_radius(columns, plain);
-    if (columns.place[column] >= 0) continue;
+  for (int column = 0; column < column_count; ++column)
     for (const std::string& name : other_names(column))
-      if (columns.place[column] < 0) columns.place[column] = place_of(plain, name);
-  }
+      if (columns.place[column] < 0 && !(naming == Naming::dump && name.rfind("v_", 0) == 0))
+        columns.place[column] = place_of(plain, name);
+  find_diameters(columns, plain);
   require_all(lines, columns);
   return columns;
 }
@@ -144,6 +143,18 @@ void SphereTable::add(const TextLines& lines, const Words& fields) {
   line_numbers_.push_back(lines.number());
   for (int column = x; column < column_count; ++column)
     if (columns_.read(column)) values_.push_back(value(lines, fields, column));
+  if (columns_.diameter >= 0) require_equal_sizes(lines, fields);
+}
+
+/// To the few digits that files are written with.
+void SphereTable::require_equal_sizes(const TextLines& lines, const Words& fields) const {
+  constexpr double few_digits = 1e-3;
+  const std::string_view text = fields[columns_.diameter];
+  const double own_radius = value(lines, fields, radius);
+  const auto diameter = finite_number(text);
+  if (diameter && std::abs(*diameter - 2.0 * own_radius) <= few_digits * 2.0 * own_radius) return;
+  lines.fail("radius is " + detail::quoted(fields[columns_.place[radius]]) + " and diameter is " + detail::quoted(text) +
+             ": keep the column that is meant, or name the other differently");
 }
 
 PackingArrays SphereTable::arrays(const std::string& path) const {

@@ -31,6 +31,7 @@ struct Columns {
   std::array<int, column_count> place;
   std::size_t fields = 0;
   bool diameters = false;  ///< in place of radii
+  int diameter = -1;       ///< where they stand beside radii, which they must agree with
   Places places = Places::plain;
 
   bool ids() const { return place[id] >= 0; }
@@ -40,9 +41,15 @@ struct Columns {
   bool read(int column) const { return column < vx || (column < omegax ? velocities() : spins()); }
 };
 
+/// Who names the columns.
+enum class Naming {
+  free,
+  dump  ///< a dump's v_NAME is a variable of the script
+};
+
 /// The columns that these names stand for. Throws InputError for the line that `lines` is at, where one is missing
 /// or named twice.
-Columns find_columns(const TextLines& lines, const Words& names);
+Columns find_columns(const TextLines& lines, const Words& names, Naming naming = Naming::free);
 
 /// Without quotes and with `[m]` or `(m)` at its end cut off, in small letters.
 std::string plain_name(std::string_view name);
@@ -64,6 +71,7 @@ class SphereTable {
  private:
   std::size_t values_a_sphere() const { return 4 + 3 * columns_.velocities() + 3 * columns_.spins(); }
   double value(const TextLines& lines, const Words& fields, int column) const;
+  void require_equal_sizes(const TextLines& lines, const Words& fields) const;
 
   Columns columns_;
   std::vector<std::int64_t> ids_;

@@ -4,6 +4,7 @@
 #include "physics/conductances.hpp"
 #include "physics/throats.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,9 @@ namespace pfv {
 
 /// How far a permeability can be trusted.
 struct PermeabilityError {
-  double relative = 0.0;          ///< K is expected within a factor 1 + relative of Stokes flow
-  double degenerate_share = 0.0;  ///< of the dissipation, in throats that a rule set
+  /// K is expected within a factor 1 + relative of Stokes flow; absent where nothing flows.
+  std::optional<double> relative;
+  std::optional<double> degenerate_share;  ///< of the dissipation, in throats that a rule set
   /// What lies outside the anchors that the estimate was compared with, a phrase each.
   std::vector<std::string> outside_range;
 };

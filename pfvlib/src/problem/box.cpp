@@ -19,6 +19,13 @@ void require_finite(double value, const std::string& what) {
     throw InputError(what + " is " + number_text(value) + ": give a finite number");
 }
 
+/// Its powers, up to the tenth, are numbers.
+void require_size(double length, const std::string& what) {
+  constexpr double largest = 1e30, smallest = 1e-30;
+  if (!(length >= smallest && length <= largest))
+    throw InputError(what + " is " + number_text(length) + " m: give one between 1e-30 and 1e30 m");
+}
+
 std::string interval(double lower, double upper) {
   return "[" + number_text(lower) + ", " + number_text(upper) + "]";
 }
@@ -32,6 +39,7 @@ void check_edge(const Box& box, int axis) {
   if (upper <= lower)
     throw InputError(where + " is " + interval(lower, upper) +
                      ", flat or inverted: give the lower bound first");
+  require_size(upper - lower, where + ": length");
 }
 
 // A rectangle may reach beyond its face, since faces move: the part on the face counts.

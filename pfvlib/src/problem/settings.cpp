@@ -308,6 +308,7 @@ std::vector<Setting> of_solver() {
                           option(&Options::solver));
   solver.help += std::string(name_of(resolved(SolverKind::automatic))) + "; from " + std::to_string(Options{}.amg_from) +
                  " spheres on amg for networks that serve few solves, or whose factor does not fit in memory";
+  if (!is_built(SolverKind::mumps)) solver.lacks = "; this build has no mumps";
   Setting ordering = choice(row("Solver", "ordering", "fill-reducing ordering of a direct solver; auto: ", both,
                                 any_model),
                             "ordering", option(&Options::ordering));

@@ -92,8 +92,9 @@ double plane_flux(const BuiltNetwork& built, const Solution& solution, const Bal
   const double relative = position - network.origin[axis], end = built.grains.spheres.edges[axis];
   if (!(relative >= 0.0 && relative <= end))
     throw InputError("the plane at " + std::to_string(position) + " m is outside the box");
+  // a centre may lie outside the container, its pore does not
   const auto beyond = [&](int pore) {
-    return network.pore_centres(axis, pore) > relative ? 1.0 : 0.0;
+    return relative <= 0.0 || (relative < end && network.pore_centres(axis, pore) > relative) ? 1.0 : 0.0;
   };
   double flux = 0.0;
   for (int t = 0; t < network.throats(); ++t)

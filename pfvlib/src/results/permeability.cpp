@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace pfv {
@@ -102,6 +103,39 @@ std::vector<double> throat_dissipation(const BuiltNetwork& built, const Solution
   return fluxes;
 }
 
+/// Part of the grains that two walls opposite each other both cut: fluid passes them on no side that the walls leave open.
+double share_between_walls(const BuiltNetwork& built) {
+  constexpr double round_off = 1e-9;
+  const Spheres& spheres = built.grains.spheres;
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(2);
+  const auto cuts = [&](int sphere, int wall) {
+    return spheres.distance(sphere, wall) < (1.0 - round_off) * spheres.radii[sphere];
+  };
+  const auto is_between = [&](int sphere) {
+    for (int a = 0; a < spheres.wall_count(); ++a)
+      for (int b = a + 1; b < spheres.wall_count() && spheres.walls[a].is_plane() && cuts(sphere, a); ++b)
+        if (spheres.walls[b].is_plane() && cuts(sphere, b) &&
+            spheres.walls[a].surface.normal.dot(spheres.walls[b].surface.normal) < -1.0 + round_off)
+          return true;
+    return false;
+  };
+  for (int sphere = 0; sphere < spheres.size(); ++sphere) {
+    if (!built.share.owns_sphere(sphere)) continue;
+    ++counts[1];
+    if (is_between(sphere)) ++counts[0];
+  }
+  built.share.add(counts);
+  return counts[1] > 0.0 ? counts[0] / counts[1] : 0.0;
+}
+
+/// Whether a rule closed a throat that has an opening.
+bool closes_open_throats(const BuiltNetwork& built) {
+  bool any = false;
+  for (int t = 0; t < built.network.throats() && !any; ++t)
+    any = built.conductances.value[t] <= 0.0 && !is_closed(built.throats, t);
+  return built.share.any(any);
+}
+
 void add_error(Report& report, const BuiltNetwork& built, const Problem& problem,
                const std::vector<double>& dissipation) {
   PermeabilityError error = permeability_error(
@@ -110,6 +144,13 @@ void add_error(Report& report, const BuiltNetwork& built, const Problem& problem
   report.permeability_error = error.relative;
   report.degenerate_share = error.degenerate_share;
   report.outside_range = std::move(error.outside_range);
+  const double between = share_between_walls(built);
+  if (between == 0.0) return;
+  char text[140];
+  std::snprintf(text, sizeof text, "grains that are cut by two opposite faces make up, of all grains, %.2g %% (compared "
+                "with none: grains must fit between the faces)", 100.0 * between);
+  report.outside_range.emplace_back(text);
+  if (closes_open_throats(built)) report.permeability_error.reset();
 }
 
 }  // namespace
