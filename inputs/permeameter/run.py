@@ -20,7 +20,7 @@ KEYS = {
     "BOX": (str, "", "XLO,XHI,YLO,YHI,ZLO,ZHI in m; none: the extent of the grains, or of a periodic dump's cell"),
     "PERIODIC": (str, "dump", "dump: the axes that are periodic in the dump; none: walls on all sides"),
     "LAW": scene.LAW,
-    "WALL": (str, "symmetry", "symmetry or no_slip side walls"),
+    "WALL": (str, "no_slip", "no_slip or symmetry side walls"),
     "OUT": scene.OUT,
 }
 PACKING = SCENE.parents[1] / "tests" / "data" / "packing_500.csv"
