@@ -53,7 +53,7 @@ if [ "${1:-}" = long ]; then
   "$root/run.sh" oedometer study
   "$root/run.sh" stability write
   for scene in oedometer_large permeameter deposition darcy_outlet wave_still wave_dense \
-      wave_loose wave_permeability wave_oscillating shear_viscous boiling triaxial_cylinder triaxial \
+      wave_loose wave_unstable wave_permeability wave_oscillating shear_viscous boiling triaxial_cylinder triaxial \
       triaxial_periodic simple_shear \
       hopper_underwater drum_underwater plate_uplift clumps settling column_collapse; do
     "$root/run.sh" "$scene"

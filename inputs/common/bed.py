@@ -17,8 +17,9 @@ MEAN_CUBE = (0.9**3 + 1.0 + 1.1**3) / 3.0
 SOLID = 5000 * 4.0 / 3.0 * math.pi * 0.03**3 * MEAN_CUBE  # m3
 VISCOSITY = 100.0  # Pa s at 5000 grains
 
+FRICTION = 0.57735  # of grains at rest: tan 30 degrees
 # friction and sinking speed (m/s) of the grains while the bed is made
-KINDS = {"dense": {"mu_fall": 0.0175, "speed": 1.0}, "loose": {"mu_fall": 0.57735, "speed": 0.15}}
+KINDS = {"dense": {"mu_fall": 0.0175, "speed": 1.0}, "loose": {"mu_fall": FRICTION, "speed": 0.15}}
 
 
 def mean_radius(grains):
@@ -30,10 +31,11 @@ def viscosity_for(grains):
     return VISCOSITY * (mean_radius(grains) / 0.03) ** 2
 
 
-def prepare(folder, kind, grains, seed, out):
-    """Restart file, dump and measures of a bed; makes it where OUT has none of this kind."""
+def prepare(folder, kind, grains, seed, out, made=0.0):
+    """Restart file, dump and measures of a bed; makes it where OUT has none of this kind. `made`: with this friction
+    (degrees) its grains sink and come to rest, instead of those of its kind; who reads the restart file gives another."""
     store = folder / f"{out}_bed.json"
-    wanted = {"kind": kind, "N": grains, "SEED": seed}
+    wanted = {"kind": kind, "N": grains, "SEED": seed, "MADE": made}
     if store.exists() and json.loads(store.read_text())["of"] == wanted:
         return json.loads(store.read_text())
     radius = mean_radius(grains)
@@ -44,7 +46,8 @@ def prepare(folder, kind, grains, seed, out):
     speed = KINDS[kind]["speed"]
     fall = round((top / speed + 2.0) / (2.5 * contact_step))
     variables = {"N": grains, "r2": radius, "LX": LENGTH, "LY": WIDTH, "top": top,
-                 "mu_fall": KINDS[kind]["mu_fall"], "g": BUOYANT,
+                 "mu_fall": math.tan(math.radians(made)) if made else KINDS[kind]["mu_fall"],
+                 "mu_rest": math.tan(math.radians(made)) if made else FRICTION, "g": BUOYANT,
                  "drag": mass * BUOYANT / speed, "fall": fall,
                  "settle": round(1.5 / (2.5 * contact_step)), "out": out, "name": folder.name,
                  **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(seed))}}

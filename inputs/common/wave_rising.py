@@ -13,6 +13,8 @@ KEYS = {
     "RATE": (float, 200.0, "growth of the amplitude, Pa/s"),
     "AMPLITUDE": (float, 0.0, "amplitude at the end, Pa; 0: 2000 if dense, 1000 if loose"),
     "SHAKE": scene.SHAKE,
+    "MADE": (float, 0.0, "friction with which the bed is made and comes to rest, degrees; it has 30 in the wave. 0: as "
+             "its kind"),
     "STEP": (float, 1.0, "time step over its default"),
     "TOP": scene.TOP,
     "LAW": scene.LAW,
@@ -88,7 +90,8 @@ def work(folder, kind, words):
         raise scene.BadSetting("N must be at least 100, RATE and STEP above 0, AMPLITUDE and "
                                "SHAKE at least 0")
     settings["AMPLITUDE"] = settings["AMPLITUDE"] or LAST[kind]
-    measures = bed.prepare(folder, kind, settings["N"], settings["SEED"], settings["OUT"])
+    measures = bed.prepare(folder, kind, settings["N"], settings["SEED"], settings["OUT"],
+                           settings["MADE"])
     duration = settings["AMPLITUDE"] / settings["RATE"]
     run = wave.run(folder, settings, measures, settings["OUT"], f"{settings['RATE']:g}*v_t",
                    duration, top=settings["TOP"], words=settings["WORDS"], shake=settings["SHAKE"],
