@@ -472,6 +472,14 @@ bool PfvFaceSources::any_mesh() const {
   return std::any_of(meshes_.begin(), meshes_.end(), [](const auto* mesh) { return mesh != nullptr; });
 }
 
+std::vector<FixMeshSurface*> PfvFaceSources::prescribed_meshes() const {
+  std::vector<FixMeshSurface*> meshes;
+  for (FixMeshSurface* mesh : meshes_)
+    if (mesh && !mesh->get_module("servo") && std::find(meshes.begin(), meshes.end(), mesh) == meshes.end())
+      meshes.push_back(mesh);
+  return meshes;
+}
+
 void PfvFaceSources::push_meshes(const std::vector<Eigen::Vector3d>& forces) const {
   for (int number = 0; number < count(); ++number) {
     if (!meshes_[number]) continue;

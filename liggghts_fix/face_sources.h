@@ -71,6 +71,8 @@ class PfvFaceSources : protected Pointers {
   std::vector<PfvServoGain> proportional_gains() const;
 
   bool any_mesh() const;
+  /// Each mesh once, without those under a servo, whose motion follows from loads.
+  std::vector<class FixMeshSurface*> prescribed_meshes() const;
   /// The largest force that grains put on one of the meshes along its axis in this step, N; collective.
   double largest_load() const;
   /// Adds a force (N) to what the meshes' stress modules record in this step, so that outputs and

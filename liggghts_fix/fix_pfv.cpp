@@ -60,7 +60,7 @@ void FixPfv::post_create() {
   std::vector<const char*> words{property_id.c_str(), group->names[igroup], "property/atom",
                                  property_id.c_str(), "vector", "no", "no", "no"};
   ranks_.dealt.column = adapts() ? PfvGrainExchange::width_with_slopes : PfvGrainExchange::returned_width;
-  words.insert(words.end(), ranks_.dealt.column + (comm->nprocs > 1 ? 1 : 0), "0.");
+  words.insert(words.end(), column_of_radii() + (adapts() ? 1 : 0), "0.");
   per_atom_ = modify->add_fix_property_atom(static_cast<int>(words.size()),
                                             const_cast<char**>(words.data()), style);
   array_atom = per_atom_->array_atom;
@@ -333,7 +333,7 @@ void FixPfv::setup(int) {
     flow_.begin_run();
   });
   schedule_.begin_run();
-  if (adapts()) plan_next_solve(1);
+  if (adapts()) plan_next_solve(1, 0.0);
   after_flow_call();
   apply_forces();
 }
@@ -355,7 +355,9 @@ void FixPfv::advance() {
   schedule_.count_solve();
   if (cell_.any()) since_.cell_rates = cell_.rates_since(since_.face_positions, since_.time);
   read_host();
-  container_ = current_container();
+  pfv::Container now = current_container();
+  const double imposed = adapts() && ranks_.is_first() ? pfv::change_of_imposed_values(now, container_) : 0.0;
+  container_ = std::move(now);
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
   const bool mean = steps > 1;
@@ -374,7 +376,7 @@ void FixPfv::advance() {
     since_.grains = is_needed ? grains_.snapshot() : PfvSnapshot{};
   });
   since_.time = 0.0;
-  if (adapts()) plan_next_solve(steps);
+  if (adapts()) plan_next_solve(steps, imposed);
   after_flow_call();
 }
 

@@ -127,8 +127,10 @@ class FixPfv : public Fix {
   // when to solve the flow
   bool adapts() const;
   bool solve_due();
-  double gross_motion() const;
-  void plan_next_solve(int steps);
+  int column_of_radii() const;
+  PfvPresent look_around() const;
+  bool has_jumped(const PfvPresent& present, double imposed) const;
+  void plan_next_solve(int steps, double imposed);
 
   // time step and coupling
   void bind_coupling();

@@ -95,6 +95,12 @@ void PfvObstacles::bind(const PfvSettings& settings, int groupbit) {
   }
 }
 
+std::vector<FixMeshSurface*> PfvObstacles::meshes() const {
+  std::vector<FixMeshSurface*> meshes;
+  for (const Held& held : held_) meshes.push_back(held.mesh);
+  return meshes;
+}
+
 void PfvObstacles::read() {
   for (Held& held : held_) {
     if (held.read && !held.mesh->triMesh()->isMoving()) continue;

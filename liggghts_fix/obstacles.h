@@ -36,6 +36,7 @@ class PfvObstacles : protected Pointers {
   /// Force (0-2, N) and moment about its centre (3-5, N m) on each in turn; rank 0.
   double load(int component) const;
   Eigen::Vector3d force() const;  ///< of the fluid on all of them, N
+  std::vector<class FixMeshSurface*> meshes() const;
   int components() const { return 6 * static_cast<int>(held_.size()); }
 
   /// Numbers that change with their places.

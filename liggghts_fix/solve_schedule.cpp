@@ -16,9 +16,9 @@ void PfvSolveSchedule::take(pfv::FlowModel& flow, const pfv::SolvedInstant& now)
 }
 
 void PfvSolveSchedule::share(MPI_Comm world) {
-  double told[] = {static_cast<double>(next_.steps), next_.offset, next_.sensitivity, next_.motion};
-  MPI_Bcast(told, 4, MPI_DOUBLE, 0, world);
-  next_ = {static_cast<int>(told[0]), told[1], told[2], told[3]};
+  double told[] = {static_cast<double>(next_.steps), next_.offset, next_.sensitivity, next_.motion, next_.share};
+  MPI_Bcast(told, 5, MPI_DOUBLE, 0, world);
+  next_ = {static_cast<int>(told[0]), told[1], told[2], told[3], told[4]};
 }
 
 std::string PfvSolveSchedule::summary() const {

@@ -6,6 +6,7 @@
 #include "grain_exchange.h"
 #include "history.h"
 #include "periodic_cell.h"
+#include "present.h"
 
 #include "pfv/solve_plan.hpp"
 
@@ -27,6 +28,7 @@ struct PfvSinceSolve {
   std::vector<Eigen::Vector3d> pivots;  // of a container's faces
   PfvCellRates cell_rates{};            // of a periodic cell, over the interval that ended with it
   PfvSnapshot grains;                   // where the flow is
+  PfvPresent present;                   // at it
   std::optional<std::uint64_t> in_restart_file;  // fingerprint of what it was written with; none after a run
   bool from_older_file = false;         // without a fingerprint, and no run since
 };

@@ -128,13 +128,65 @@ TEST(SolvePlan, AMotionThatTheLoadsFollowIsAJumpBeyondTenTolerances) {
   EXPECT_TRUE(next.has_jumped(0.979, 1e-3));
 }
 
-TEST(SolvePlan, ValuesOfBoundariesAreComparedWithTheLargest) {
-  const Box then = ::support::pressure_box(Face::zlo, 100.0, Face::zhi, 0.0, Wall::symmetry);
+TEST(SolvePlan, ChangesOfPressuresAreMeasuredByTheirDifferencesWhateverTheLevel) {
+  for (const double level : {0.0, 101325.0}) {
+    const Box then = ::support::pressure_box(Face::zlo, level + 100.0, Face::zhi, level, Wall::symmetry);
+    Box now = then;
+    EXPECT_EQ(change_of_imposed_values(now, then), 0.0);
+    now[Face::zhi].boundary.value += 0.5;
+    EXPECT_NEAR(change_of_imposed_values(now, then), 5e-3, 1e-12);
+  }
+}
+
+TEST(SolvePlan, ChangesOfFluxesAreMeasuredByFluxesWhateverThePressures) {
+  Box then = ::support::pressure_box(Face::zlo, 1e5, Face::zhi, 0.0, Wall::symmetry);
+  then[Face::xlo].boundary = Boundary::flux(1e-5);
   Box now = then;
-  now[Face::zhi].boundary.value = 0.09;
-  EXPECT_FALSE(imposed_values_differ(now, then, 1e-3));
-  now[Face::zhi].boundary.value = 0.11;
-  EXPECT_TRUE(imposed_values_differ(now, then, 1e-3));
+  now[Face::xlo].boundary.value = 1.1e-5;
+  EXPECT_NEAR(change_of_imposed_values(now, then), 1.0 / 11.0, 1e-12);
+}
+
+TEST(SolvePlan, ACosineThatGrowsIsSeenWhereverItsZerosAre) {
+  const auto wave = [](double amplitude, double shift, double half) {
+    Box box = ::support::pressure_box(Face::zlo, 0.0, Face::zhi, 1000.0, Wall::symmetry);
+    box[Face::zhi].boundary.profile = [=](const Eigen::Vector3d& place, double) {
+      return 1000.0 + amplitude * std::cos(3.14159265358979 * (place.x() - shift) / half);
+    };
+    return box;
+  };
+  for (const double half : {0.01, 0.0625, 0.25, 1.0})  // of the box's side
+    EXPECT_GT(change_of_imposed_values(wave(100.0, 0.5 * half, half), wave(0.0, 0.5 * half, half)), 0.08) << half;
+}
+
+TEST(SolvePlan, AWallIsAJumpByWhatTheFluidBearsAndFromRestAlways) {
+  const NextSolve next{10, 0.0, 0.0, 0.0, 0.1};
+  EXPECT_FALSE(next.walls_have_jumped(0.09, 1.0, 1e-3));
+  EXPECT_TRUE(next.walls_have_jumped(0.11, 1.0, 1e-3));
+  EXPECT_TRUE(NextSolve{}.walls_have_jumped(1e-9, 0.0, 1e-3));
+  EXPECT_FALSE(NextSolve{}.walls_have_jumped(0.0, 0.0, 1e-3));
+}
+
+/// Steps until the next solve, eight solves after the pressure has jumped to threefold.
+int interval_after_a_jump(bool told) {
+  Bed bed;
+  bed.packing.velocities.setZero();
+  const double step = 1e-3 * bed.limit();
+  const std::vector<Piston> pistons(6);
+  SolvePlan plan(1e-3);
+  plan.restart();
+  for (int solve = 0; solve < 18; ++solve) {
+    const bool jumps = solve == 10;
+    if (jumps) bed.flow.set_container(::support::pressure_box(Face::zlo, 3.0, Face::zhi, 0.0, Wall::symmetry));
+    const int steps = jumps ? 1 : plan.next().steps;
+    bed.flow.step(bed.packing.view(), steps * step);
+    plan.take(bed.flow, {bed.packing.view(), bed.masses, pistons, steps, step, 0.0, 0.0, 0.01, nullptr, jumps && told});
+  }
+  return plan.next().steps;
+}
+
+TEST(SolvePlan, AfterAJumpIntervalsBeginAnewAndTheOldLoadsAreForgotten) {
+  EXPECT_LT(interval_after_a_jump(false), 5);
+  EXPECT_GT(interval_after_a_jump(true), 20);
 }
 }  // namespace pfv
 

@@ -20,6 +20,7 @@ struct SolvedInstant {
   double load_on_faces;                    ///< N: the largest on a face beside the fluid's, as far as it is known
   double retriangulation_strain;
   const std::vector<RigidBody>* bodies = nullptr;  ///< in the order of Packing::bodies; null: none
+  bool jumped = false;  ///< boundaries, walls or grains are so much other than at the last solve that it tells nothing
 };
 
 /// What a host needs between two solves; small enough to be told to all ranks.
@@ -28,10 +29,18 @@ struct NextSolve {
   double offset = 0.0;       ///< from the instant that its loads belong to until it, steps of the host
   double sensitivity = 0.0;  ///< change of the loads, over the load, with that of the motion by all of itself
   double motion = 0.0;       ///< at the last solve
+  double share = 0.0;        ///< of the fluid in the loads at the last solve, 0 to 1
+
+  /// Tolerances that a change between two solves may have: one beyond is a jump.
+  static constexpr double foreseen = 10.0;
 
   /// Whether the grains move so much faster or slower that an interval which was made from what had happened
   /// before cannot have foreseen it.
   bool has_jumped(double motion_now, double tolerance) const;
+  /// The same of walls that the host moves: `change` of what they sweep, m³/s, since the last solve, at which `fastest`
+  /// was the most that any of them or all grains swept. The fluid's loads are taken to go with that; where it had
+  /// none, tenfold speed is a jump.
+  bool walls_have_jumped(double change, double fastest, double tolerance) const;
 };
 
 /// When an explicit host solves the flow next (`couple_every auto`): SolveInterval with its bounds - the
@@ -74,7 +83,11 @@ class SolvePlan {
   double strain_ = 0.0;             ///< after it
 };
 
-/// Whether the values of two boxes' boundaries differ by more than this part of the largest of them.
-bool imposed_values_differ(const Container& now, const Container& then, double tolerance);
+/// The largest change of a boundary's value from one container to another with the same faces, patches and regions: of
+/// a flux over the largest flux that is imposed; of a pressure, or of what a gradient makes of the cell's length, over
+/// the largest difference between two pressures that are imposed, now or then. The change of a lone pressure is all
+/// of it, 1; a constant that all pressures have in addition changes nothing. Profiles are compared at 32 places, those of
+/// `then`, whose `lower` and `upper` are known, at time 0.
+double change_of_imposed_values(const Container& now, const Container& then);
 
 }  // namespace pfv

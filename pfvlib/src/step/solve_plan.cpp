@@ -6,12 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pfv {
 
 bool NextSolve::has_jumped(double motion_now, double tolerance) const {
-  constexpr double foreseen = 10.0;  // tolerances
   return std::abs(motion_now - motion) * sensitivity > foreseen * tolerance * motion;
+}
+
+bool NextSolve::walls_have_jumped(double change, double fastest, double tolerance) const {
+  return std::max(share, tolerance) * change > foreseen * tolerance * fastest;
 }
 
 void SolvePlan::restart() {
@@ -34,6 +38,7 @@ void SolvePlan::update_sensitivity(double motion) {
                       : std::min(share, std::max(fading * next_.sensitivity,
                                                  seen ? interval_.change() * before / change : 0.0));
   next_.motion = motion;
+  next_.share = share;
   solved_ = true;
 }
 
@@ -81,8 +86,12 @@ void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
   if (ranks_) ranks_->add(sums, 3);
   const auto [grains, squares, weight] = sums;
   if (grains == 0.0) {
-    next_ = {1, 0.0, 0.0, now.motion};
+    next_ = {1, 0.0, 0.0, now.motion, 0.0};
     return;
+  }
+  if (now.jumped) {
+    interval_.restart();
+    solved_ = false;
   }
   const double section = pi * squares / grains;
   const std::vector<double> areas = face_areas(flow.container());
@@ -104,26 +113,75 @@ void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
   next_.offset = interval_.held().offset;
 }
 
-bool imposed_values_differ(const Container& now, const Container& then, double tolerance) {
-  double change = 0.0, largest = 0.0;
-  const auto compare = [&](const Boundary& a, const Boundary& b) {
-    change = std::max(change, std::abs(a.value - b.value));
-    largest = std::max({largest, std::abs(a.value), std::abs(b.value)});
-    if (a.profile && b.profile)  // a cosine: its two extremes tell mean and amplitude
-      for (const auto& place : {then.lower, then.upper})
-        change = std::max(change, std::abs(a.profile(place, 0.0) - b.profile(place, 0.0)));
-  };
-  if (now.pressure_gradient != then.pressure_gradient) {  // what it makes of the cell's length
-    const Eigen::Vector3d length = then.upper - then.lower;
-    change = (now.pressure_gradient - then.pressure_gradient).cwiseProduct(length).cwiseAbs().maxCoeff();
-    largest = now.pressure_gradient.cwiseAbs().cwiseMax(then.pressure_gradient.cwiseAbs()).cwiseProduct(length).maxCoeff();
+namespace {
+
+/// Places within a container that the waves of no profile all have their zeros at: multiples of the powers of the root
+/// of x⁴ = x + 1, modulo 1.
+std::vector<Eigen::Vector3d> places_within(const Container& container) {
+  constexpr int count = 32;
+  const Eigen::Array3d stride(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
+  std::vector<Eigen::Vector3d> places;
+  for (int k = 1; k <= count; ++k) {
+    const Eigen::Array3d part = k * stride - (k * stride).floor();
+    places.push_back(container.lower + part.matrix().cwiseProduct(container.upper - container.lower));
   }
-  for (std::size_t f = 0; f < now.faces.size(); ++f) compare(now.faces[f].boundary, then.faces[f].boundary);
+  return places;
+}
+
+/// Changes of fluxes and of pressures, and what each is measured by.
+class ImposedChange {
+ public:
+  explicit ImposedChange(const Container& then) : places_(places_within(then)) {}
+
+  void compare(const Boundary& now, const Boundary& then, const Surface* face) {
+    if (then.imposes_flux()) {
+      fluxes_ = std::max(fluxes_, std::abs(now.value - then.value));
+      largest_flux_ = std::max({largest_flux_, std::abs(now.value), std::abs(then.value)});
+    }
+    if (!then.imposes_pressure()) return;
+    if (!now.profile || !then.profile) return compare_pressures(now.value, then.value);
+    for (Eigen::Vector3d place : places_) {
+      if (face) place += face->distance(place) * face->outward_at(place);
+      compare_pressures(now.profile(place, 0.0), then.profile(place, 0.0));
+    }
+  }
+
+  /// Pa, over the length of a cell.
+  void compare_gradients(const Eigen::Vector3d& now, const Eigen::Vector3d& then) {
+    pressures_ = std::max(pressures_, (now - then).cwiseAbs().maxCoeff());
+    along_cell_ = now.cwiseAbs().cwiseMax(then.cwiseAbs()).maxCoeff();
+  }
+
+  double part() const {
+    const auto over = [](double change, double scale) { return change > 0.0 ? change / scale : 0.0; };
+    return std::max(over(fluxes_, largest_flux_), over(pressures_, std::max(highest_ - lowest_, along_cell_)));
+  }
+
+ private:
+  void compare_pressures(double now, double then) {
+    pressures_ = std::max(pressures_, std::abs(now - then));
+    lowest_ = std::min({lowest_, now, then});
+    highest_ = std::max({highest_, now, then});
+  }
+
+  std::vector<Eigen::Vector3d> places_;
+  double fluxes_ = 0.0, largest_flux_ = 0.0, pressures_ = 0.0, along_cell_ = 0.0;
+  double lowest_ = std::numeric_limits<double>::infinity(), highest_ = -lowest_;
+};
+
+}  // namespace
+
+double change_of_imposed_values(const Container& now, const Container& then) {
+  ImposedChange change(then);
+  const Eigen::Vector3d length = then.upper - then.lower;
+  change.compare_gradients(now.pressure_gradient.cwiseProduct(length), then.pressure_gradient.cwiseProduct(length));
+  for (std::size_t f = 0; f < now.faces.size(); ++f)
+    change.compare(now.faces[f].boundary, then.faces[f].boundary, &then.faces[f].surface);
   for (std::size_t i = 0; i < now.patches.size(); ++i)
-    compare(now.patches[i].boundary, then.patches[i].boundary);
+    change.compare(now.patches[i].boundary, then.patches[i].boundary, &then.faces[then.patches[i].face].surface);
   for (std::size_t i = 0; i < now.regions.size(); ++i)
-    compare(now.regions[i].boundary, then.regions[i].boundary);
-  return change > tolerance * largest;
+    change.compare(now.regions[i].boundary, then.regions[i].boundary, nullptr);
+  return change.part();
 }
 
 }  // namespace pfv
