@@ -113,12 +113,12 @@ void warn_of_size(const Facts& facts, std::ostream& warnings) {
 void warn_of_pinned(const SolveRequest& request, const Facts& facts, const Report& report, std::ostream& warnings) {
   const Counts& counts = report.counts;
   // in a cell that is periodic all around no pressure has a level
-  if (report.permeability_tensor && counts.pinned_pores == report.pores) return;
+  if (report.permeability_tensor && counts.pinned_pores == 0) return;
   if (is_unloaded(request, facts))
     warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
   else if (counts.pinned_pores > 0)
     warnings << "pfv: warning: " << counts.pinned_pores
-             << " pores at rest have no way to a pressure: they take the mean imposed one\n";
+             << " pores at rest have no way to the fluid: they take the mean pressure around them\n";
 }
 
 void warn_of_empty_space(const FlowModel& flow, std::ostream& warnings) {

@@ -145,7 +145,8 @@ void add_evaluations(py::class_<FlowHost>& flow) {
              host.run([&box](FlowModel& model) { model.set_box(box); });
            }, "box"_a, R"(New places, velocities or boundary values of faces, patches, regions.
 
-Values cost nothing; another kind of boundary, another wall or other extents lead to a new network.)");
+Values cost nothing; another kind of boundary, another wall or other extents lead to a new network. A face that
+moves by its velocity over the steps keeps it until the strain asks for another.)");
 }
 
 void add_forces(py::class_<FlowHost>& flow) {

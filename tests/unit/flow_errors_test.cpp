@@ -4,6 +4,7 @@
 #include "support/boxes.hpp"
 #include "support/packings.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace flow_errors_test {
@@ -182,6 +183,93 @@ TEST(BadPackings, AreRefusedBySphere) {
     p.velocities(0, 9) = std::nan("");
   }), "sphere 10");
   expect_line(refused([](Arrays& p) { p = packing_of({}); }), "no spheres");
+}
+
+/// 20 random spheres that overlap in a periodic cell: pores between them have no way out.
+pfv::PackingArrays trapping_cell() {
+  Random random(3);
+  std::vector<Sphere> spheres;
+  for (int k = 0; k < 20; ++k) {
+    const Eigen::Vector3d place = random.in_cube(0.0, 1.0);
+    spheres.push_back({place[0], place[1], place[2], random(0.5, 1.5)});
+  }
+  pfv::PackingArrays packing = packing_of(spheres);
+  packing.radii *= std::cbrt(0.6 / solid_volume(packing));
+  return packing;
+}
+
+TEST(CutOffPores, OfAPeriodicCellPushAlikeWhereverTheCellIsCut) {
+  pfv::Box box;
+  box.periodic = {true, true, true};
+  box.pressure_gradient = {0.0, 0.0, -1.0};
+  const pfv::PackingArrays packing = trapping_cell();
+  pfv::Flow flow(box, viscosity_one());
+  const Eigen::Matrix3Xd forces = flow.evaluate(packing.view()).total;
+  const std::int64_t pinned = flow.report().counts.pinned_pores;
+  ASSERT_GT(pinned, 0);
+  ASSERT_LT(pinned, flow.report().pores / 2);
+  for (const Eigen::Vector3d& shift : {Eigen::Vector3d(0.3, 0.0, 0.0), {0.0, 0.0, 0.3}, {0.5, 0.5, 0.5}}) {
+    pfv::PackingArrays moved = packing;
+    moved.positions.colwise() += shift;
+    pfv::Flow other(box, viscosity_one());
+    const Eigen::Matrix3Xd found = other.evaluate(moved.view()).total;
+    EXPECT_LT((found - forces).cwiseAbs().maxCoeff(), 1e-9 * forces.cwiseAbs().maxCoeff()) << shift.transpose();
+    EXPECT_EQ(other.report().counts.pinned_pores, pinned);
+  }
+}
+
+// Grains that yield determine the pressures of trapped pores above that of the fluid, and no level of both.
+TEST(CutOffPores, OfAPeriodicCellInAnImplicitStep) {
+  pfv::Box box;
+  box.periodic = {true, true, true};
+  box.pressure_gradient = {0.0, 0.0, -1.0};
+  pfv::PackingArrays packing = trapping_cell();
+  const Eigen::VectorXd masses = Eigen::VectorXd::Ones(20);
+  const Eigen::Matrix3Xd others = Eigen::Matrix3Xd::Zero(3, 20);
+  const pfv::GrainDynamics dynamics{{masses.data(), 20}, {others.data(), 3, 20}};
+  const auto forces = [&] {
+    pfv::Flow flow(box, viscosity_one());
+    const pfv::Step step = pfv::Step::with(pfv::Coupling::implicit, dynamics);
+    const Eigen::Matrix3Xd found = flow.advance(packing.view(), 1e-3, step).total;
+    EXPECT_LT(std::abs(flow.report().mass_error), 1e-10);
+    return found;
+  };
+  const Eigen::Matrix3Xd here = forces();
+  packing.positions.row(2).array() += 0.3;
+  EXPECT_LT((forces() - here).cwiseAbs().maxCoeff(), 1e-8 * here.cwiseAbs().maxCoeff());
+}
+
+TEST(CutOffPores, HoldTheMeanPressureAroundThem) {
+  pfv::Flow flow(pressure_box(pfv::Face::zlo, 5.0, pfv::Face::zhi, 3.0, pfv::Wall::no_slip), viscosity_one());
+  pfv::PackingArrays packing = closed_tetrahedron();
+  packing.positions.row(2).array() += 0.15;  // nearer to the lower pressure
+  flow.evaluate(packing.view());
+  ASSERT_EQ(flow.report().counts.pinned_pores, 1);
+  const pfv::PoreNetwork& network = flow.network();
+  const int pore = [&] {
+    for (int p = 0; p < network.pores(); ++p)
+      if ((network.origin + network.pore_centres.col(p) - Eigen::Vector3d(0.5, 0.5, 0.65)).norm() < 1e-6) return p;
+    return -1;
+  }();
+  ASSERT_GE(pore, 0);
+  double sum = 0.0;
+  int count = 0;  // the four facets are alike
+  for (const auto& [i, j] : network.throat_pores)
+    if (i == pore || j == pore) {
+      sum += flow.pore_pressures()[i == pore ? j : i];
+      ++count;
+    }
+  ASSERT_EQ(count, 4);
+  EXPECT_NEAR(flow.pore_pressures()[pore], sum / 4.0, 1e-9);
+  EXPECT_LT(flow.pore_pressures()[pore], 3.99);
+}
+
+TEST(Sizes, WhosePowersAreNoNumbersAreRefused) {
+  for (const double edge : {1e100, 1e-150}) {
+    pfv::Box box = upward_box(pfv::Wall::no_slip);
+    box.upper = {edge, edge, edge};
+    expect_line(refusal([&] { pfv::Flow flow(box, viscosity_one()); }), "give one between 1e-30 and 1e30 m");
+  }
 }
 
 }  // namespace

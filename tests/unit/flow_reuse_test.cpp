@@ -271,5 +271,53 @@ TEST(FlowReuse, AKeptNetworkGivesTheBytesOfAFreshOne) {
   EXPECT_TRUE(kept.pore_pressures() == fresh.pore_pressures());
 }
 
+/// 60 grains in the unit cube; the face xhi is moved between two calls.
+struct MovedFace {
+  pfv::PackingArrays packing = random_packing(60, 0.05, 0.1, 4);
+  pfv::Box box = upward_box(pfv::Wall::symmetry);
+  pfv::Flow flow{box, viscosity_one()};
+
+  MovedFace() { flow.evaluate(packing.view()); }
+  void move_to(double place) {
+    box.upper[0] = place;
+    flow.set_box(box);
+  }
+};
+
+TEST(FlowReuse, OtherExtentsLeadToANewNetwork) {
+  for (const double place : {2.0, 1.01, 0.999}) {
+    MovedFace moved;
+    moved.move_to(place);
+    moved.flow.evaluate(moved.packing.view());
+    pfv::Flow fresh(moved.box, viscosity_one());
+    const pfv::Forces& forces = fresh.evaluate(moved.packing.view());
+    EXPECT_EQ(moved.flow.report().counts.triangulate, 2);
+    EXPECT_EQ(*moved.flow.report().permeability, *fresh.report().permeability) << place;
+    EXPECT_EQ(moved.flow.forces().total, forces.total);
+  }
+}
+
+TEST(FlowReuse, AFaceThatJumpsBeforeAStepLeadsToANewNetwork) {
+  MovedFace moved;
+  moved.move_to(1.2);
+  moved.flow.step(moved.packing.view(), dt);
+  EXPECT_EQ(moved.flow.retriangulations(), 1);
+}
+
+TEST(FlowReuse, AFaceThatMovesWithItsVelocityKeepsTheNetwork) {
+  MovedFace moved;
+  moved.flow.set_retriangulation(pfv::StrainMeasure::mean, 0.5);
+  moved.box[pfv::Face::xhi].velocity = 1.0;
+  for (int step = 1; step <= 20; ++step) {
+    moved.move_to(1.0 + step * dt);
+    moved.flow.step(moved.packing.view(), dt);
+  }
+  EXPECT_EQ(moved.flow.retriangulations(), 0);
+  moved.box[pfv::Face::xhi].velocity = 0.0;  // it stops: moved by the velocity of the step before
+  moved.move_to(1.0 + 21 * dt);
+  moved.flow.step(moved.packing.view(), dt);
+  EXPECT_EQ(moved.flow.retriangulations(), 0);
+}
+
 }  // namespace
 }  // namespace flow_reuse_test

@@ -71,7 +71,7 @@ class Flow final : public FlowModel {
   /// the sum of fluid volume times pressure is conserved.
   void rebuild() override;
 
-  /// Between two triangulations faces move with the network, like grains.
+  /// Between two triangulations faces move with the network, like grains; those that jump lead to a new one.
   void set_container(const Container& container) override;
   const Container& container() const override;
   const Fluid& fluid() const override;

@@ -135,8 +135,8 @@ class FlowModel {
   virtual void rebuild() = 0;
 
   /// New positions, velocities or boundary values of faces, patches and regions. Values cost nothing;
-  /// another kind of boundary, another wall type, or other extents lead to a rebuild. Positions
-  /// take effect at the next rebuild.
+  /// another kind of boundary, another wall type, or other extents than velocities explain lead to a rebuild. Positions
+  /// that they explain take effect at the next rebuild.
   virtual void set_container(const Container& container) = 0;
   void set_box(const Box& box) { set_container(box); }
   virtual const Container& container() const = 0;

@@ -10,6 +10,7 @@
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
 #include "step/shared_pressures.hpp"
+#include "step/trapped_pores.hpp"
 #include "work/phase_clock.hpp"
 
 namespace pfv {
@@ -63,9 +64,7 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
   if (automatic.is_open() && coupling != Coupling::implicit) use(automatic.now(work.counts));
   if (factor_pressures(built, problem(), dt, work)) schemes.forget_factor();
   work.counts.open_water = built.operators.open_water ? open_water_count(built) : 0;
-  double pinned = 0.0;
-  for (const Isolated& isolated : built.kept.system.isolated) pinned += static_cast<double>(isolated.pores.size());
-  work.counts.pinned_pores = static_cast<std::int64_t>(built.share.sum(pinned));
+  work.counts.pinned_pores = trapped_pores(built);
   return built;
 }
 

@@ -117,12 +117,21 @@ SymmetricMatrix sum_of(const SymmetricMatrix& g, const std::vector<double>& pins
   return a;
 }
 
-/// Keeps the pins of sets that nothing yields to; says which others there are.
+/// Whether one pressure in all of them would move something.
+bool level_moves(const std::vector<Isolated>& isolated, const Unknowns& unknowns, const YieldingRows& rows) {
+  Isolated all{{}, -1, 0.0};
+  for (const Isolated& set : isolated) all.pores.insert(all.pores.end(), set.pores.begin(), set.pores.end());
+  return yields_to(all, unknowns, rows);
+}
+
+/// Keeps the pins of sets that nothing yields to, and that of the fluid itself where grains yield to no more than what
+/// it is above trapped pores. Says which sets it keeps.
 std::vector<double> freed_pins(const PressureSystem& system, const Unknowns& unknowns, const YieldingRows& rows,
                                std::vector<Isolated>& held) {
   std::vector<double> pins(unknowns.count, 0.0);
   for (const Isolated& isolated : system.isolated) {
-    if (yields_to(isolated, unknowns, rows))
+    if (yields_to(isolated, unknowns, rows) &&
+        (!isolated.main || level_moves(system.isolated, unknowns, rows)))
       pins[isolated.unknown] = isolated.pin;
     else
       held.push_back(isolated);

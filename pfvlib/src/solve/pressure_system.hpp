@@ -39,6 +39,7 @@ struct Isolated {
   std::vector<int> pores;
   int unknown;  ///< the one that is held at the reference pressure; -1: one of another rank
   double pin;   ///< what holds it: added to its diagonal
+  bool main = false;  ///< the fluid itself, where no pressure is imposed: not trapped
 };
 
 /// Those that there are; nothing pinned yet.

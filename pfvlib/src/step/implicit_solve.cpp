@@ -152,7 +152,7 @@ void ImplicitSolve::refine(const StepTask& task, const ForcedMotion& forced, dou
     if (!*factor_->loses_digits || last <= exact * largest) return;
     factor_->unknowns += correction;
     solution.unknown_pressures = factor_->unknowns.head(system.pressures);
-    take_unknown_pressures(built, *factor_->solver, solution);
+    take_unknown_pressures(built, isolated(), *factor_->solver, solution);
     loads = follow(task, forced, growth, solution);
     last /= largest;
   }
@@ -180,7 +180,7 @@ void ImplicitSolve::solve(const StepTask& task, const ForcedMotion& forced, Solu
       ++work.counts.solve;
     }
     solution.unknown_pressures = factor_->unknowns.head(pressures);
-    take_unknown_pressures(built, *factor_->solver, solution);
+    take_unknown_pressures(built, isolated(), *factor_->solver, solution);
   }
   refine(task, forced, growth, follow(task, forced, growth, solution), solution);
   solution.unpaid = solution.dt * (rate_beyond(solution.growth, solution.motion) -

@@ -6,6 +6,7 @@
 #include "pfv/error.hpp"
 #include "physics/yade_partition.hpp"
 #include "step/solvability.hpp"
+#include "step/trapped_pores.hpp"
 #include "work/phase_clock.hpp"
 
 namespace pfv {
@@ -98,6 +99,7 @@ bool factor_pressures(BuiltNetwork& built, const Problem& problem, double step, 
       kept.storage = storage_volumes(built.throats) / (*problem.fluid.bulk_modulus * step);
     kept.system = assemble(built.network, built.conductances.value, built.unknowns, kept.storage, built.share,
                            built.rows.get());
+    mark_main_fluid(built);
   }
   if (new_pattern)
     kept.solver = kept.former_solver ? std::move(kept.former_solver)

@@ -49,6 +49,15 @@ double PoreStrain::since(const PoreStrain& then, const BuiltNetwork& built,
 BuiltNetwork& NetworkKeeper::update(const Packing& packing, const Problem& problem,
                                     const Wanted& wanted, WorkRecord& work,
                                     const TakenUp& taken_up) {
+  if (!stale_ && built_ && built_->share.any(has_jumped(problem, wanted))) discard(true);
+  const bool kept = !stale_ && built_;
+  BuiltNetwork& built = renew(packing, problem, wanted, work, taken_up);
+  if (wanted.advance && kept) jumps_.pass(problem.container, wanted.step);
+  return built;
+}
+
+BuiltNetwork& NetworkKeeper::renew(const Packing& packing, const Problem& problem, const Wanted& wanted,
+                                   WorkRecord& work, const TakenUp& taken_up) {
   const auto anew = [&] { rebuild_now(packing, problem, wanted, work, taken_up); };
   if (is_outdated(packing, problem)) {
     anew();
@@ -90,6 +99,7 @@ void NetworkKeeper::rebuild_now(const Packing& packing, const Problem& problem,
   auto fresh = derive_network(packing, problem, work);
   fresh->kept.former_solver = std::move(solver);
   ids_.assign(packing.ids.data(), packing.ids.data() + packing.size());
+  jumps_.begin(problem.container, wanted.step);
   take_up(std::move(fresh), problem, 0.0, work, taken_up);
   stale_ = moved_by_host_ = false;
 }
@@ -131,6 +141,15 @@ bool NetworkKeeper::is_outdated(const Packing& packing, const Problem& problem) 
   if (built_->share.any(others)) return true;
   if (built_->halo) built_->halo->refresh(packing);
   return built_->share.any(has_moved_far(built_->halo ? built_->halo->seen() : packing, problem));
+}
+
+/// Over steps pores follow a face as they do a grain, by the radius of the smallest; without a step the faces count as
+/// they are, up to the strain that is allowed.
+bool NetworkKeeper::has_jumped(const Problem& problem, const Wanted& wanted) const {
+  const Eigen::VectorXd& radii = built_->grains.spheres.radii;
+  if (radii.size() == 0) return false;
+  const double smallest = radii.minCoeff(), strain = std::min(1.0, problem.options.retriangulation_strain);
+  return jumps_.any(problem.container, wanted.step, wanted.advance ? smallest : strain * smallest, smallest);
 }
 
 bool NetworkKeeper::has_moved_far(const Packing& packing, const Problem& problem) const {

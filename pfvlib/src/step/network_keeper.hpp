@@ -3,6 +3,7 @@
 
 #include "step/background_rebuild.hpp"
 #include "step/built_network.hpp"
+#include "step/face_jumps.hpp"
 #include "step/problem.hpp"
 #include "step/solution.hpp"
 #include "work/work_record.hpp"
@@ -82,6 +83,9 @@ class NetworkKeeper {
     PoreStrain begun_at;  ///< the strain when it was begun
   };
 
+  BuiltNetwork& renew(const Packing& packing, const Problem& problem, const Wanted& wanted, WorkRecord& work,
+                      const TakenUp& taken_up);
+  bool has_jumped(const Problem& problem, const Wanted& wanted) const;
   bool is_outdated(const Packing& packing, const Problem& problem);
   bool has_moved_far(const Packing& packing, const Problem& problem) const;
   void rebuild_now(const Packing& packing, const Problem& problem, const Wanted& wanted,
@@ -97,6 +101,7 @@ class NetworkKeeper {
   bool stale_ = true, moved_by_host_ = false, had_network_ = false;
   std::optional<Next> next_;
   PoreStrain strain_;
+  FaceJumps jumps_;
   std::int64_t rebuilds_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "step/continuity.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
+#include "step/trapped_pores.hpp"
 #include "work/phase_clock.hpp"
 
 #include <cmath>
@@ -113,11 +114,13 @@ void find_right_side(const BuiltNetwork& built, Solution& solution) {
                   solution.relative_pressures, solution.right_side);
 }
 
-void take_unknown_pressures(const BuiltNetwork& built, const LinearSolver& solver, Solution& solution) {
+void take_unknown_pressures(const BuiltNetwork& built, const std::vector<Isolated>& isolated, const LinearSolver& solver,
+                            Solution& solution) {
   const std::vector<int>& unknown = built.unknowns.of_pore;
   for (std::size_t p = 0; p < unknown.size(); ++p)
     if (unknown[p] >= 0)
       solution.relative_pressures[static_cast<Eigen::Index>(p)] = solution.unknown_pressures[unknown[p]];
+  level_trapped_pores(built, isolated, solution);
   solution.pressures = solution.relative_pressures.array() + solution.reference;
   if (built.share.any(!solution.pressures.allFinite()))
     throw SolverError(solver.name() +
@@ -133,7 +136,7 @@ void solve_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& 
     solver.solve(solution.right_side, solution.unknown_pressures);
     ++work.counts.solve;
   }
-  take_unknown_pressures(built, solver, solution);
+  take_unknown_pressures(built, built.kept.system.isolated, solver, solution);
   if (&solver == built.kept.solver.get())
     refine_pressures(built, problem, solver, built.kept.loses_digits, work, solution, [] {});
 }

@@ -26,9 +26,10 @@ void impose(const BuiltNetwork& built, Solution& solution);
 
 /// b of G p = b for the rates of the solution, with its imposed pressures.
 void find_right_side(const BuiltNetwork& built, Solution& solution);
-/// The pressures of all pores from those of the unknowns. Throws SolverError, `solver` by name, where one is not
-/// finite.
-void take_unknown_pressures(const BuiltNetwork& built, const LinearSolver& solver, Solution& solution);
+/// The pressures of all pores from those of the unknowns, trapped ones levelled; `isolated`: the sets that pins hold.
+/// Throws SolverError, `solver` by name, where one is not finite.
+void take_unknown_pressures(const BuiltNetwork& built, const std::vector<Isolated>& isolated, const LinearSolver& solver,
+                            Solution& solution);
 
 /// Pressures for the rates of the solution. Throws SolverError.
 void solve_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver& solver,
