@@ -147,7 +147,7 @@ void add_error(Report& report, const BuiltNetwork& built, const Problem& problem
   const double between = share_between_walls(built);
   if (between == 0.0) return;
   char text[140];
-  std::snprintf(text, sizeof text, "grains that are cut by two opposite faces make up, of all grains, %.2g %% (compared "
+  std::snprintf(text, sizeof text, "grains that are cut by two opposite faces make up, of all grains, %.3g %% (compared "
                 "with none: grains must fit between the faces)", 100.0 * between);
   report.outside_range.emplace_back(text);
   if (closes_open_throats(built)) report.permeability_error.reset();
