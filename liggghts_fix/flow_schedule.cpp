@@ -62,7 +62,9 @@ bool FixPfv::has_jumped(const PfvPresent& present, double imposed) const {
 void FixPfv::plan_next_solve(int steps, double imposed) {
   const double on_meshes = faces_.largest_load();
   const PfvPresent present = look_around();
-  const bool jumped = update->ntimestep > update->firststep && has_jumped(present, imposed);
+  const bool now = update->ntimestep > update->firststep && has_jumped(present, imposed);
+  const bool jumped = now || since_.jumped;  // mean velocities have a part of a jump, the rest comes with the next solve
+  since_.jumped = now && steps > 1;
   on_flow([&] {
     schedule_.take(*flow_, {grains_.packing(), grains_.masses(), faces_.pistons(), steps, update->dt, present.motion,
                             on_meshes, settings_.options.retriangulation_strain, &bodies_.rigid(), jumped});

@@ -29,6 +29,7 @@ struct PfvSinceSolve {
   PfvCellRates cell_rates{};            // of a periodic cell, over the interval that ended with it
   PfvSnapshot grains;                   // where the flow is
   PfvPresent present;                   // at it
+  bool jumped = false;                  // in the interval of several steps that ended with it
   std::optional<std::uint64_t> in_restart_file;  // fingerprint of what it was written with; none after a run
   bool from_older_file = false;         // without a fingerprint, and no run since
 };

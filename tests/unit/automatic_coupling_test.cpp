@@ -166,6 +166,27 @@ TEST(SolvePlan, AWallIsAJumpByWhatTheFluidBearsAndFromRestAlways) {
   EXPECT_FALSE(NextSolve{}.walls_have_jumped(0.0, 0.0, 1e-3));
 }
 
+/// Of a bed between these pressures whose grains speed up: steps between the solves.
+std::vector<int> intervals_at(double level) {
+  Bed bed;
+  bed.flow.set_container(::support::pressure_box(Face::zlo, level + 1.0, Face::zhi, level, Wall::symmetry));
+  const double step = 1e-3 * bed.limit();
+  const std::vector<Piston> pistons(6);
+  SolvePlan plan(1e-3);
+  plan.restart();
+  std::vector<int> intervals;
+  for (int solve = 0; solve < 15; ++solve) {
+    const int steps = plan.next().steps;
+    bed.packing.velocities *= 1.0 + 1e-2 * steps;
+    bed.flow.step(bed.packing.view(), steps * step);
+    plan.take(bed.flow, {bed.packing.view(), bed.masses, pistons, steps, step, 0.0, 0.0, 0.01});
+    intervals.push_back(steps);
+  }
+  return intervals;
+}
+
+TEST(SolvePlan, AConstantInAllPressuresChangesNoInterval) { EXPECT_EQ(intervals_at(1024.0), intervals_at(0.0)); }
+
 /// Steps until the next solve, eight solves after the pressure has jumped to threefold.
 int interval_after_a_jump(bool told) {
   Bed bed;

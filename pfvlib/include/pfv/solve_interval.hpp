@@ -43,10 +43,12 @@ class SolveInterval {
   /// steps that loads may be held at most, >= 1, half as many if they go on: a trend turns a delay into growth
   /// sooner. `ids`: of the grains; another set begins anew. `new_network`: the first solve on it, whose loads
   /// differ from the last by no change in time alone: the interval stays. `answer`: steps in which the velocities
-  /// of the grains follow a load, over which errors are means; 0: each counts by itself.
+  /// of the grains follow a load, over which errors are means; 0: each counts by itself. `of_level`: what a constant in
+  /// all pressures is on each face, N, which is no load to measure by; empty: none.
   void take(const Packing::Ids& ids, const Forces& forces,
             const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
-            double face_area, double section, int most, bool new_network = false, double answer = 0.0);
+            double face_area, double section, int most, bool new_network = false, double answer = 0.0,
+            const std::vector<Eigen::Vector3d>& of_level = {});
 
   /// The loads of the same instant on another network, right after `take`: from here on they are held, and
   /// what the last solve said of the change in time stays.
@@ -99,7 +101,7 @@ class SolveInterval {
   double size_of(const Difference& difference, const Scales& scales) const;
   double error_of(const Difference& missed, Difference& mean, double weight, const Scales& scales) const;
   Scales scales_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces, double face_load,
-                   double face_area, double section);
+                   double face_area, double section, const std::vector<Eigen::Vector3d>& of_level);
   Errors errors_of(const Loads& loads, const Scales& scales, double apart, double weight);
   void compare(const Loads& loads, const Scales& scales, int steps, int most, double answer);
   void choose(Errors errors, int most);

@@ -79,8 +79,10 @@ double SolveInterval::error_of(const Difference& missed, Difference& mean, doubl
 
 /// What errors are measured by, and the fluid's part in it.
 SolveInterval::Scales SolveInterval::scales_of(const Forces& forces, const std::vector<Eigen::Vector3d>& faces,
-                                               double face_load, double face_area, double section) {
-  const double of_fluid = largest_norm(faces), of_grains = root_mean_square(forces.total);
+                                               double face_load, double face_area, double section,
+                                               const std::vector<Eigen::Vector3d>& of_level) {
+  const double of_fluid = largest_norm(of_level.empty() ? faces : minus(faces, 1.0, of_level));
+  const double of_grains = root_mean_square(forces.total);
   const double face = std::max(face_load, of_fluid);
   const Scales scales{face, std::max(of_grains, face / face_area * section)};
   share_ = std::max(ratio(of_fluid, scales.face), ratio(of_grains, scales.grain));
@@ -138,10 +140,10 @@ void SolveInterval::compare(const Loads& loads, const Scales& scales, int steps,
 void SolveInterval::take(const Packing::Ids& ids, const Forces& forces,
                          const std::vector<Eigen::Vector3d>& faces, int steps, double face_load,
                          double face_area, double section, int most,
-                         bool new_network, double answer) {
+                         bool new_network, double answer, const std::vector<Eigen::Vector3d>& of_level) {
   forget_others(ids);
   Loads loads = loads_of(forces, faces);
-  const Scales scales = scales_of(forces, faces, face_load, face_area, section);
+  const Scales scales = scales_of(forces, faces, face_load, face_area, section, of_level);
   if (last_ && new_network) {
     trend_.reset();
     continues_ = false;

@@ -78,43 +78,6 @@ double weight_of(const SolvedInstant& now, const Fluid& fluid) {
   return weight;
 }
 
-}  // namespace
-
-void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
-  const auto& radii = now.packing.radii;
-  double sums[] = {static_cast<double>(radii.size()), radii.squaredNorm(), weight_of(now, flow.fluid())};
-  if (ranks_) ranks_->add(sums, 3);
-  const auto [grains, squares, weight] = sums;
-  if (grains == 0.0) {
-    next_ = {1, 0.0, 0.0, now.motion, 0.0};
-    return;
-  }
-  if (now.jumped) {
-    interval_.restart();
-    solved_ = false;
-  }
-  const double section = pi * squares / grains;
-  const std::vector<double> areas = face_areas(flow.container());
-  const double area = *std::max_element(areas.begin(), areas.end());
-  const bool new_network = flow.retriangulations() != last_network_;
-  last_network_ = flow.retriangulations();
-  const double load = std::max(now.load_on_faces, weight);
-  const int most = most_steps(flow, now);
-  const double answer = 0.5 * limit_ / now.step;  // the fastest motion fades by 2 / limit; not known: below 0
-  interval_.take(now.packing.ids, flow.forces(), flow.face_forces(), now.steps, load, area, section, most,
-                 new_network, answer);
-  if (take_up_network(flow, now)) {
-    last_network_ = flow.retriangulations();
-    interval_.put_on_network(flow.forces(), flow.face_forces());
-  }
-  strain_ = flow.strain();
-  update_sensitivity(now.motion);
-  next_.steps = interval_.steps();
-  next_.offset = interval_.held().offset;
-}
-
-namespace {
-
 /// Places within a container that the waves of no profile all have their zeros at: multiples of the powers of the root
 /// of x⁴ = x + 1, modulo 1.
 std::vector<Eigen::Vector3d> places_within(const Container& container) {
@@ -152,6 +115,8 @@ class ImposedChange {
     along_cell_ = now.cwiseAbs().cwiseMax(then.cwiseAbs()).maxCoeff();
   }
 
+  /// Pa; infinite where no pressure is imposed.
+  double lowest() const { return lowest_; }
   double part() const {
     const auto over = [](double change, double scale) { return change > 0.0 ? change / scale : 0.0; };
     return std::max(over(fluxes_, largest_flux_), over(pressures_, std::max(highest_ - lowest_, along_cell_)));
@@ -169,18 +134,73 @@ class ImposedChange {
   double lowest_ = std::numeric_limits<double>::infinity(), highest_ = -lowest_;
 };
 
-}  // namespace
-
-double change_of_imposed_values(const Container& now, const Container& then) {
+ImposedChange change_of_boundaries(const Container& now, const Container& then) {
   ImposedChange change(then);
-  const Eigen::Vector3d length = then.upper - then.lower;
-  change.compare_gradients(now.pressure_gradient.cwiseProduct(length), then.pressure_gradient.cwiseProduct(length));
   for (std::size_t f = 0; f < now.faces.size(); ++f)
     change.compare(now.faces[f].boundary, then.faces[f].boundary, &then.faces[f].surface);
   for (std::size_t i = 0; i < now.patches.size(); ++i)
     change.compare(now.patches[i].boundary, then.patches[i].boundary, &then.faces[then.patches[i].face].surface);
   for (std::size_t i = 0; i < now.regions.size(); ++i)
     change.compare(now.regions[i].boundary, then.regions[i].boundary, nullptr);
+  return change;
+}
+
+/// What the lowest pressure that is imposed is on each face, N: a level that moves no grain. The faces' areas as vectors
+/// add up to nothing, so that a round one has what the planes leave; of several round ones each has none.
+std::vector<Eigen::Vector3d> loads_of_level(const Container& container, const std::vector<double>& areas) {
+  const double lowest = change_of_boundaries(container, container).lowest();
+  std::vector<Eigen::Vector3d> loads(areas.size(), Eigen::Vector3d::Zero());
+  if (!std::isfinite(lowest) || lowest == 0.0) return loads;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  std::vector<std::size_t> round;
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    const Surface& surface = container.faces[f].surface;
+    if (!surface.is_plane()) round.push_back(f);
+    else sum += loads[f] = lowest * areas[f] * surface.normal;
+  }
+  if (round.size() == 1) loads[round[0]] = -sum;
+  return loads;
+}
+
+}  // namespace
+
+void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
+  const auto& radii = now.packing.radii;
+  double sums[] = {static_cast<double>(radii.size()), radii.squaredNorm(), weight_of(now, flow.fluid())};
+  if (ranks_) ranks_->add(sums, 3);
+  const auto [grains, squares, weight] = sums;
+  if (grains == 0.0) {
+    next_ = {1, 0.0, 0.0, now.motion, 0.0};
+    return;
+  }
+  if (now.jumped) {
+    interval_.restart();
+    solved_ = false;
+  }
+  const double section = pi * squares / grains;
+  const std::vector<double> areas = face_areas(flow.container());
+  const double area = *std::max_element(areas.begin(), areas.end());
+  const bool new_network = flow.retriangulations() != last_network_;
+  last_network_ = flow.retriangulations();
+  const double load = std::max(now.load_on_faces, weight);
+  const int most = most_steps(flow, now);
+  const double answer = 0.5 * limit_ / now.step;  // the fastest motion fades by 2 / limit; not known: below 0
+  interval_.take(now.packing.ids, flow.forces(), flow.face_forces(), now.steps, load, area, section, most,
+                 new_network, answer, loads_of_level(flow.container(), areas));
+  if (take_up_network(flow, now)) {
+    last_network_ = flow.retriangulations();
+    interval_.put_on_network(flow.forces(), flow.face_forces());
+  }
+  strain_ = flow.strain();
+  update_sensitivity(now.motion);
+  next_.steps = interval_.steps();
+  next_.offset = interval_.held().offset;
+}
+
+double change_of_imposed_values(const Container& now, const Container& then) {
+  ImposedChange change = change_of_boundaries(now, then);
+  const Eigen::Vector3d length = then.upper - then.lower;
+  change.compare_gradients(now.pressure_gradient.cwiseProduct(length), then.pressure_gradient.cwiseProduct(length));
   return change.part();
 }
 
