@@ -262,6 +262,7 @@ void PfvFaceSources::read() {
       read_mesh(number);
     else if (sources_[number].kind == Source::periodic)
       positions_[number] = number % 2 == 1 ? domain->boxhi[number / 2] : domain->boxlo[number / 2];
+    if (meshes_[number]) settle_motion(number);
     if (!container_) continue;
     // any motion changes the distance from some place far off
     const Eigen::Vector3d far(1.7e3, -2.3e3, 3.1e3);
@@ -338,41 +339,6 @@ void PfvFaceSources::read_mesh(int number) {
   positions_[number] = 0.5 * (global[axis] - global[3 + axis]);
   velocities_[number] = 0.5 * (global[6] - global[7]);
   read_gliding(number);
-}
-
-/// The rigid motion in the face's plane that is nearest to that of the nodes: their mean velocity about their
-/// middle, and the spin by least squares.
-void PfvFaceSources::read_gliding(int number) {
-  gliding_[number] = {};
-  TriMesh* mesh = meshes_[number]->triMesh();
-  if (!mesh->isMoving()) return;
-  auto* velocities = mesh->prop().getElementProperty<MultiVectorContainer<double, 3, 3>>("v");
-  const int axis = number / 2, a = (axis + 1) % 3, b = (axis + 2) % 3;
-  // number, places, velocities, moment of the velocities and of the places, by the two other axes
-  std::array<double, 7> sums{};
-  for (int i = 0; velocities && i < mesh->sizeLocal(); ++i)
-    for (int j = 0; j < 3; ++j) {
-      double x[3];
-      mesh->node(i, j, x);
-      const double* v = (*velocities)(i)[j];
-      const double terms[7] = {1.0, x[a], x[b], v[a], v[b], x[a] * v[b] - x[b] * v[a],
-                               x[a] * x[a] + x[b] * x[b]};
-      for (int k = 0; k < 7; ++k) sums[k] += terms[k];
-    }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 7, MPI_DOUBLE, MPI_SUM, world);
-  if (sums[0] == 0.0) return;
-  for (int k = 1; k < 7; ++k) sums[k] /= sums[0];
-  Gliding& gliding = gliding_[number];
-  gliding.pivot[a] = sums[1];
-  gliding.pivot[b] = sums[2];
-  gliding.velocity[a] = sums[3];
-  gliding.velocity[b] = sums[4];
-  const double spread = sums[6] - sums[1] * sums[1] - sums[2] * sums[2];
-  const double moment = sums[5] - sums[1] * sums[4] + sums[2] * sums[3];
-  const double size = std::sqrt(std::max(spread, 0.0));
-  // what is left of a plain translation is round-off
-  const double noise = 1e-9 * (std::abs(sums[3]) + std::abs(sums[4])) * size;
-  if (spread > 0.0 && std::abs(moment) > noise) gliding.spin = moment / spread;
 }
 
 pfv::FaceCondition PfvFaceSources::condition(int number, pfv::Wall wall,

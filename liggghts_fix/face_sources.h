@@ -5,6 +5,7 @@
 
 #include "arguments.h"
 #include "flow_ranks.h"
+#include "mesh_motion.h"
 
 #include "pfv/flow_model.hpp"
 #include "pfv/mesh_walls.hpp"
@@ -25,7 +26,7 @@ struct PfvServoGain {
 
 class PfvFaceSources : protected Pointers {
  public:
-  explicit PfvFaceSources(class LAMMPS* lmp) : Pointers(lmp) {}
+  explicit PfvFaceSources(class LAMMPS* lmp) : Pointers(lmp), motions_(lmp) {}
 
   /// Finds the walls and meshes that the faces name. Throws pfv::InputError, the same on all ranks,
   /// where one is missing or has not the shape that its face needs: of a box, a plane normal to the face's axis.
@@ -34,6 +35,13 @@ class PfvFaceSources : protected Pointers {
   /// Reads where planes, walls and meshes are now; collective. Leaves `extent` faces alone. Throws
   /// pfv::InputError, the same on all ranks, for a mesh that is no longer normal to its axis.
   void read();
+
+  /// Whether the face's mesh stays and only its surface moves.
+  bool is_conveyor(int number) const { return LAMMPS_NS::is_conveyor(meshes_[number]); }
+  /// A line for each face that cannot have the motion of its mesh's surface, and is at rest.
+  std::vector<std::string> surfaces_at_rest() const;
+  /// How meshes move, kept from run to run.
+  PfvMeshMotions& motions() { return motions_; }
 
   /// Whether `follow_grains` has anything to do.
   bool wants_grains() const;
@@ -92,10 +100,15 @@ class PfvFaceSources : protected Pointers {
   void read_motion_of_part(int number);
   void read_mesh(int number);
   void read_gliding(int number);
+  void settle_motion(int number);
+  PfvMeshMotion motion(int number) const;
+  void set_motion(int number, const PfvMeshMotion& motion);
+  pfv::Surface present_surface(int number) const;
   void turn_outwards(const Eigen::Vector3d& middle);
   double way_out(int number, const Eigen::Vector3d& inside) const;  ///< 1 or -1 for a shape's normal
   std::vector<Eigen::Vector3d> outward_normals() const;             ///< of a container; 0 where unknown
 
+  PfvMeshMotions motions_;
   bool container_ = false;
   std::vector<std::string> names_;
   std::vector<PfvFaceSource> sources_;

@@ -314,7 +314,7 @@ void FixPfv::setup(int) {
   since_.in_restart_file.reset();
   since_.from_older_file = false;
   if (!goes_on) since_.face_positions = faces_.positions();
-  if (since_.steps == 0 || since_.pivots.empty()) since_.pivots = faces_.pivots();
+  if (since_.steps == 0 || since_.pivots.size() != faces_.pivots().size()) since_.pivots = faces_.pivots();
   const std::vector<PfvUnseenWall> beside = walls_beside_the_faces(lmp, groupbit, settings_);
   const std::vector<double> mesh_areas = faces_.mesh_areas();
   on_flow([&] {
@@ -322,6 +322,7 @@ void FixPfv::setup(int) {
     warn_of_empty_box();
     for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.grains(), ranks_))
       warn_of(warning);
+    warn_of_surfaces_at_rest();
     flow_.prepare(container_, settings_, grains_.packing(), flow_step(), ranks_.library());
     check_servos();
     call_flow(flow_step(), false);
@@ -383,7 +384,7 @@ void FixPfv::advance() {
 void FixPfv::after_flow_call() {
   const Eigen::MatrixXd stresses = stresses_where_due();
   on_flow([&] {
-    flow_.forget_report();
+    flow_.forget_results();
     obstacles_.take_loads(grains_, flow_->forces());
     files_->write(*flow_, {grains_.packing(), grains_.unwrapped(), stresses}, update->ntimestep, ranks_);
     if (files_->history_due(update->ntimestep))
@@ -412,7 +413,7 @@ void FixPfv::push_meshes() {
   if (!ranks_.is_one()) return;
   if (ranks_.is_first()) obstacles_.push();
   if (!faces_.any_mesh()) return;
-  std::vector<Eigen::Vector3d> forces = flow_->face_forces();
+  std::vector<Eigen::Vector3d> forces = flow_.face_forces();
   if (const double trend = schedule_.steps_of_trend(since_.steps); trend != 0.0)
     for (std::size_t f = 0; f < forces.size(); ++f)
       forces[f] += trend * schedule_.held()->face_slope[f];
@@ -446,6 +447,7 @@ void FixPfv::write_restart(FILE* file) {
   record.elapsed = since_.time;
   record.last_positions = since_.face_positions;
   record.cell_rates = since_.cell_rates;
+  record.meshes = meshes_for_restart();
   record.taken = schedule_.taken();
   on_flow([&] {
     if (flow_) place_faces(container_);
@@ -470,6 +472,7 @@ void FixPfv::write_restart(FILE* file) {
 void FixPfv::restart(char* bytes) {
   everywhere([&] {
     PfvRestartRecord record = unpack(bytes);
+    restore_meshes(record);
     since_.in_restart_file = record.left;
     since_.steps = record.steps_since_flow;
     since_.time = record.elapsed;

@@ -105,6 +105,7 @@ class FixPfv : public Fix {
   void remember_state();
   void warn_of_empty_box() const;
   void warn_of(const std::string& problem) const;
+  void warn_of_surfaces_at_rest() const;
   void warn_of_gaps(const std::vector<double>& mesh_areas) const;
   void say_what_holds_the_fluid();
   void say_what_is_filled();
@@ -115,6 +116,8 @@ class FixPfv : public Fix {
   void after_flow_call();
   void apply_forces();
   void push_meshes();
+  PfvRestartRecord::Meshes meshes_for_restart();
+  void restore_meshes(const PfvRestartRecord& record);
 
   // which ranks hold the flow, and which grains
   void choose_ranks();

@@ -46,7 +46,7 @@ double FixPfv::quantity(int n) {
     case 3: return flow_.report().force_balance_error;
     case 4: return static_cast<double>(flow_->retriangulations());
     case 5: return flow_->time_step_limit(grains_.masses(), faces_.pistons(), bodies_.rigid());
-    case 6: return flow_->mean_pressure();
+    case 6: return flow_.mean_pressure();
     case 7: return static_cast<double>(hidden_or_outside());
     case 8: return static_cast<double>(flow_->stages());
     case 9: return static_cast<double>(since_.steps);

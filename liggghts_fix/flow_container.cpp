@@ -2,6 +2,7 @@
 // `fix pfv`: what holds the fluid, as walls, meshes, grains and variables have it now.
 #include "fix_pfv.h"
 
+#include "pfv/error.hpp"
 #include "pfv/idle_faces.hpp"
 
 #include "error.h"
@@ -121,13 +122,36 @@ void FixPfv::place_faces(pfv::Container& container) {
 
 void FixPfv::use_mean_velocities_of_faces() {
   for (int number = 0; number < container_.face_count(); ++number) {
-    if (settings_.sources[number].kind != PfvFaceSource::Kind::mesh) continue;
+    if (settings_.sources[number].kind != PfvFaceSource::Kind::mesh || faces_.is_conveyor(number)) continue;
     Eigen::Vector3d& velocity = container_.faces[number].velocity;
     if (settings_.container)
       velocity = (faces_.pivots()[number] - since_.pivots[number]) / since_.time;
     else
       velocity[number / 2] = (faces_.positions()[number] - since_.face_positions[number]) / since_.time;
   }
+}
+
+PfvRestartRecord::Meshes FixPfv::meshes_for_restart() {
+  PfvRestartRecord::Meshes meshes{{}, faces_.motions().record(), obstacles_.motions().record()};
+  for (const Eigen::Vector3d& pivot : since_.pivots)
+    meshes.last_pivots.insert(meshes.last_pivots.end(), pivot.begin(), pivot.end());
+  return meshes;
+}
+
+/// Throws pfv::InputError where there are meshes and the file is of a form that does not have them.
+void FixPfv::restore_meshes(const PfvRestartRecord& record) {
+  if (!record.meshes) {
+    const auto follows_mesh = [](const PfvFaceSource& source) { return source.kind == PfvFaceSource::Kind::mesh; };
+    if (std::none_of(settings_.sources.begin(), settings_.sources.end(), follows_mesh) && settings_.obstacles.empty())
+      return;
+    throw pfv::InputError("the restart file holds this fix in a form before 10, which does not say how its meshes move; "
+                          "write the file with this version, or give the fix another ID to start the flow anew");
+  }
+  since_.pivots.clear();
+  for (std::size_t at = 0; at + 3 <= record.meshes->last_pivots.size(); at += 3)
+    since_.pivots.emplace_back(&record.meshes->last_pivots[at]);
+  faces_.motions().restore(record.meshes->motions_of_faces);
+  obstacles_.motions().restore(record.meshes->motions_of_obstacles);
 }
 
 /// Grains that are there but all outside: most likely the box or the units are not those meant. A box
@@ -154,6 +178,12 @@ void FixPfv::warn_of_empty_box() const {
 
 void FixPfv::warn_of(const std::string& problem) const {
   error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + units().relabelled(problem)).c_str());
+}
+
+/// Conveyors whose motion the fluid cannot have. Where the flow is.
+void FixPfv::warn_of_surfaces_at_rest() const {
+  for (const std::string& line : faces_.surfaces_at_rest()) warn_of(line);
+  for (const std::string& line : obstacles_.surfaces_at_rest()) warn_of(line);
 }
 
 /// A face goes on where its mesh ends: a gate, a plate with an opening. Where the flow is.

@@ -29,10 +29,16 @@ void PfvKeptFlow::prepare(const pfv::Container& container, const PfvSettings& se
 std::optional<pfv::FlowState> PfvKeptFlow::state_on_new_network(const pfv::Container& container,
                                                                 const pfv::Packing& grains, double dt) {
   if (!model_) return restored_;
+  if (left_) {
+    forget_results();
+  } else {
+    report();
+    face_forces();
+    mean_pressure();
+  }
   model_->set_container(container);
   model_->rebuild();
   model_->evaluate(grains, dt);
-  forget_report();
   return model_->state();
 }
 
@@ -57,6 +63,22 @@ void PfvKeptFlow::begin_anew(PfvLeftState found) {
 const pfv::Report& PfvKeptFlow::report() {
   if (!report_) report_ = model_->report();
   return *report_;
+}
+
+const std::vector<Eigen::Vector3d>& PfvKeptFlow::face_forces() {
+  if (!face_forces_) face_forces_ = model_->face_forces();
+  return *face_forces_;
+}
+
+double PfvKeptFlow::mean_pressure() {
+  if (!mean_pressure_) mean_pressure_ = model_->mean_pressure();
+  return *mean_pressure_;
+}
+
+void PfvKeptFlow::forget_results() {
+  report_.reset();
+  face_forces_.reset();
+  mean_pressure_.reset();
 }
 
 }  // namespace LAMMPS_NS

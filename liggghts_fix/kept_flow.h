@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -42,15 +43,20 @@ class PfvKeptFlow {
   bool has_left() const { return left_.has_value(); }
   void begin_run() { left_.reset(); }
 
-  /// One report serves all outputs of a step.
+  /// Results of the last flow call, for outputs and meshes. A restart file within a run does not change them, as it
+  /// does not change the loads that the grains hold until the next call.
   const pfv::Report& report();
-  void forget_report() { report_.reset(); }
+  const std::vector<Eigen::Vector3d>& face_forces();
+  double mean_pressure();
+  void forget_results();
 
  private:
   std::unique_ptr<pfv::FlowModel> model_;
   std::optional<pfv::FlowState> restored_;
   std::optional<PfvLeftState> left_;  // by the last run, as far as it is known; none within a run
   std::optional<pfv::Report> report_;
+  std::optional<std::vector<Eigen::Vector3d>> face_forces_;
+  std::optional<double> mean_pressure_;
 };
 
 }  // namespace LAMMPS_NS

@@ -107,9 +107,11 @@ void PfvObstacles::read() {
     held.motion.placement = pfv::placement_between(held.reference, triangles_of(held.mesh, world), named(held.id));
     pfv::ContainerFace motion;
     if (held.mesh->triMesh()->isMoving()) set_motion_of_mesh(motion, held.mesh, world);
-    held.motion.velocity = motion.velocity;
-    held.motion.spin = motion.angular_velocity;
-    held.motion.pivot = motion.pivot;
+    const PfvMeshMotion present =
+        motions_.present(&held - held_.data(), held.mesh, {motion.velocity, motion.angular_velocity, motion.pivot});
+    held.motion.velocity = present.velocity;
+    held.motion.spin = present.spin;
+    held.motion.pivot = present.pivot;
     held.read = true;
   }
 }
@@ -168,6 +170,15 @@ std::vector<std::string> PfvObstacles::news() {
   std::vector<std::string> lines;
   for (Held& held : held_)
     if (std::exchange(held.fresh, false)) lines.push_back("obstacle " + held.id + ": " + described(held.obstacle));
+  return lines;
+}
+
+std::vector<std::string> PfvObstacles::surfaces_at_rest() const {
+  std::vector<std::string> lines;
+  for (const Held& held : held_)
+    if (is_conveyor(held.mesh))
+      lines.push_back(named(held.id) + "has a surface velocity, which its spheres do not have; the fluid takes it to be "
+                                       "at rest");
   return lines;
 }
 

@@ -6,6 +6,7 @@
 #include "arguments.h"
 #include "bodies.h"
 #include "grain_exchange.h"
+#include "mesh_motion.h"
 
 #include "pfv/obstacle.hpp"
 
@@ -18,7 +19,7 @@ namespace LAMMPS_NS {
 
 class PfvObstacles : protected Pointers {
  public:
-  explicit PfvObstacles(class LAMMPS* lmp) : Pointers(lmp) {}
+  explicit PfvObstacles(class LAMMPS* lmp) : Pointers(lmp), motions_(lmp) {}
 
   bool any() const { return !held_.empty(); }
   /// Finds the meshes, and the spheres for those that have none yet or another shape than before; `groupbit`: of the
@@ -44,6 +45,11 @@ class PfvObstacles : protected Pointers {
   /// What became of each mesh, since the last call.
   std::vector<std::string> news();
 
+  /// How they move, kept from run to run.
+  PfvMeshMotions& motions() { return motions_; }
+  /// A line for each whose surface moves while it stays, which the fluid does not see.
+  std::vector<std::string> surfaces_at_rest() const;
+
   /// For the restart file: the spheres, and where the meshes were when these were found.
   std::vector<double> record() const;
   void restore(const std::vector<double>& record);
@@ -63,6 +69,7 @@ class PfvObstacles : protected Pointers {
   double usual_diameter(const std::string& what, int groupbit) const;
   bool has_kept_its_shape(const Held& held, const std::vector<pfv::Triangle>& now, const std::string& what) const;
 
+  PfvMeshMotions motions_;
   std::vector<Held> held_;
 };
 

@@ -11,7 +11,8 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 9.0;
+constexpr double format_number = 10.0;
+constexpr double without_meshes = 9.0;
 constexpr double without_fingerprint = 8.0;
 constexpr double without_obstacles = 7.0;
 constexpr double without_counts = 6.0;      // of steps and solves
@@ -51,6 +52,13 @@ std::optional<std::uint64_t> joined(const std::vector<double>& halves) {
   return static_cast<std::uint64_t>(halves[1]) << 32 | static_cast<std::uint64_t>(halves[2]);
 }
 
+PfvRestartRecord::Meshes meshes_of(Reader& reader) {
+  PfvRestartRecord::Meshes meshes;
+  for (auto* list : {&meshes.last_pivots, &meshes.motions_of_faces, &meshes.motions_of_obstacles})
+    *list = reader.list<double>(reader.count());
+  return meshes;
+}
+
 }  // namespace
 
 std::vector<double> pack(const PfvRestartRecord& record) {
@@ -83,14 +91,18 @@ std::vector<double> pack(const PfvRestartRecord& record) {
   data.push_back(static_cast<double>(record.obstacles.size()));
   append(record.obstacles);
   append(halves(record.left));
+  const PfvRestartRecord::Meshes meshes = record.meshes.value_or(PfvRestartRecord::Meshes());
+  for (const auto* list : {&meshes.last_pivots, &meshes.motions_of_faces, &meshes.motions_of_obstacles}) {
+    data.push_back(static_cast<double>(list->size()));
+    append(*list);
+  }
   return data;
 }
 
 PfvRestartRecord unpack(const char* bytes) {
   Reader reader(bytes);
   const double found = reader.next();
-  const bool whole = found == std::floor(found);
-  if (!whole || found < without_cell_rates || found > format_number)
+  if (found != std::floor(found) || found < without_cell_rates || found > format_number)
     throw pfv::InputError("the restart file holds this fix in form " +
                           std::to_string(static_cast<int>(found)) + " of another version, this one reads the "
                           "forms " + std::to_string(static_cast<int>(without_cell_rates)) + " to " +
@@ -123,7 +135,8 @@ PfvRestartRecord unpack(const char* bytes) {
     record.taken.solves = static_cast<std::int64_t>(reader.next());
   }
   if (found >= without_fingerprint) record.obstacles = reader.list<double>(reader.count());
-  if (found == format_number) record.left = joined(reader.list<double>(3));
+  if (found >= without_meshes) record.left = joined(reader.list<double>(3));
+  if (found == format_number) record.meshes = meshes_of(reader);
   return record;
 }
 

@@ -20,6 +20,11 @@ struct PfvRestartRecord {
   int steps_since_flow = 0;
   double elapsed = 0.0;  ///< s, since the last flow step
   std::vector<double> last_positions;  ///< of the faces
+  /// Of meshes that are faces or obstacles: places at the last flow step (m), motions; none: not known.
+  struct Meshes {
+    std::vector<double> last_pivots, motions_of_faces, motions_of_obstacles;
+  };
+  std::optional<Meshes> meshes;
   PfvCellRates cell_rates{};           ///< m/s, over the last interval
   PfvSnapshot last_grains;
   PfvTaken taken;
