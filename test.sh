@@ -31,6 +31,7 @@ if [ "${1:-}" = long ]; then
   cmake --build "$root/build-sanitize"
   "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
   UBSAN_OPTIONS=halt_on_error=1 "$root/build-sanitize/bin/fuzz" --count 1000 --seed 1
+  UBSAN_OPTIONS=halt_on_error=1 "$root/build-sanitize/bin/container_fuzz" --count 500 --seed 1
   for ranks in 2 4; do  # leaks: MPI keeps what it has until the program ends
     ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 mpirun --allow-run-as-root --oversubscribe \
       --mca mpi_yield_when_idle 1 -n "$ranks" "$root/build-sanitize/bin/ranks_tests" --gtest_brief=1
@@ -49,6 +50,7 @@ if [ "${1:-}" = long ]; then
   PFV_RANK_PACKINGS=20000 mpirun --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 -n 4 \
     "$root/build/bin/ranks_tests" --gtest_filter='*HardToTriangulate'
   "$root/build/bin/fuzz" --count 10000 --seed 2
+  "$root/build/bin/container_fuzz" --count 5000 --seed 2
   "$root/run.sh" oedometer N=5000
   "$root/run.sh" oedometer study
   "$root/run.sh" stability write

@@ -183,8 +183,22 @@ void parse_obstacle(Words& words, PfvSettings& settings) {
   settings.obstacles.push_back(obstacle);
 }
 
+/// A block of space that cuts the part out of the face.
+void parse_container_patch(Words& words, PfvSettings& settings) {
+  PfvPatch part;
+  part.face = words.word("the face's name");
+  for (int axis = 0; axis < 3; ++axis) {
+    part.patch.lower[axis] = words.number("the block's bound", demands::finite);
+    part.patch.upper[axis] = words.number("the block's bound", demands::finite);
+  }
+  const auto boundary = take_boundary(words, {Of::patch, settings.patches.size(), {}}, settings);
+  if (!boundary) words.fail("the block X0 X1 Y0 Y1 Z0 Z1 must be followed by one of " + boundary_forms());
+  part.patch.boundary = *boundary;
+  settings.patches.push_back(part);
+}
+
 void parse_patch(Words& words, PfvSettings& settings) {
-  if (settings.container) words.fail("a container has no patches; give a region a pressure or flux");
+  if (settings.container) return parse_container_patch(words, settings);
   pfv::Patch patch;
   patch.face = words.choice<pfv::Face>();
   for (double& edge : patch.rectangle) edge = words.number("the rectangle's edge", demands::finite);
@@ -445,7 +459,9 @@ int modify_pfv(PfvSettings& settings, int narg, char** arg) {
 
 double& bound_number(PfvSettings& settings, const PfvBinding& binding) {
   switch (binding.of) {
-    case Of::patch: return settings.box.patches[binding.number].boundary.value;
+    case Of::patch:
+      return settings.container ? settings.patches[binding.number].patch.boundary.value
+                                : settings.box.patches[binding.number].boundary.value;
     case Of::region: return settings.box.regions[binding.number].boundary.value;
     case Of::mean: return settings.profiles[binding.number]->mean;
     case Of::amplitude: return settings.profiles[binding.number]->amplitude;

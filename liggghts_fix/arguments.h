@@ -27,7 +27,6 @@ struct PfvFaceSource {
   pfv::Surface surface;  ///< plane, flat of a primitive cylinder or, with `extent`, its direction: of a container
   int part = -1;   ///< which of the walls of a mesh or primitive cylinder that is several, or of a round mesh; -1: one plane
   int parts = 1;   ///< how many walls that mesh has, also those that bound nothing
-  bool may_bound_nothing = false;  ///< the face may lie behind the others
   pfv::RoundMeshes round = pfv::RoundMeshes::as_cylinders;
 };
 
@@ -69,6 +68,12 @@ struct PfvFieldOutput {
   bool contact_stress = false;  ///< with the stresses that contacts and motion cause
 };
 
+/// A part of a face of a container, by the face's name: it may still have to be found.
+struct PfvPatch {
+  std::string face;
+  pfv::ContainerPatch patch;
+};
+
 /// A mesh that stands among the grains.
 struct PfvObstacleSource {
   std::string fix_id;
@@ -85,6 +90,7 @@ struct PfvSettings : pfv::Settings {
   bool flats = false;  ///< round meshes stay the flats that they are made of
   std::vector<pfv::ContainerFace> faces;
   std::vector<PfvFaceSource> sources = std::vector<PfvFaceSource>(6);  ///< of the box's faces, or of these
+  std::vector<PfvPatch> patches;  ///< of the container; those of a box are its own
   std::array<std::optional<PfvCosine>, 6> profiles;
   std::vector<std::string> left_out;  ///< walls that are no faces, each with the reason
   std::vector<PfvObstacleSource> obstacles;

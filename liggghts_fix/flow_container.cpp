@@ -3,7 +3,6 @@
 #include "fix_pfv.h"
 
 #include "pfv/error.hpp"
-#include "pfv/idle_faces.hpp"
 
 #include "error.h"
 #include "input.h"
@@ -56,6 +55,15 @@ pfv::Box box_with_conditions(const PfvSettings& settings, const PfvFaceSources& 
   return box;
 }
 
+std::vector<pfv::ContainerPatch> patches_of(const PfvSettings& settings, const pfv::Container& container) {
+  std::vector<pfv::ContainerPatch> patches;
+  for (const PfvPatch& part : settings.patches) {
+    patches.push_back(part.patch);
+    patches.back().face = *container.face_named(part.face);
+  }
+  return patches;
+}
+
 }  // namespace
 
 /// Boundary conditions and velocities of the faces; their positions follow in place_faces.
@@ -69,6 +77,7 @@ pfv::Container FixPfv::current_container() {
   pfv::Container container;
   container.faces = settings_.faces;
   container.regions = settings_.box.regions;
+  container.patches = patches_of(settings_, container);
   for (int number = 0; number < container.face_count(); ++number) faces_.set_motion(number, container.faces[number]);
   return container;
 }
@@ -104,10 +113,8 @@ void FixPfv::place_faces(pfv::Container& container) {
       container.faces[number].surface = faces_.surface(number);
     if (!flow_ || !pfv::take_bounds(container, flow_->container())) {
       pfv::Container whole = closed_container(container.faces);
-      std::vector<char> may_be_idle;
-      for (const PfvFaceSource& source : settings_.sources) may_be_idle.push_back(source.may_bound_nothing);
-      pfv::refuse_idle_faces(whole, may_be_idle);
       whole.regions = container.regions;
+      whole.patches = container.patches;
       container = std::move(whole);
     }
   } else {

@@ -109,6 +109,7 @@ std::optional<double> volume_within(const std::vector<std::vector<pfv::Surface>>
       faces.emplace_back();
       faces.back().name = std::to_string(faces.size());
       faces.back().surface = facing(surface, middle);
+      faces.back().may_bound_nothing = true;
     }
   try {
     return pfv::volume_of(pfv::container_of(faces));
@@ -137,7 +138,7 @@ void split(PfvSettings& settings, std::size_t number, const std::vector<std::siz
     }
     settings.sources[at].part = static_cast<int>(part);
     settings.sources[at].parts = static_cast<int>(parts);
-    settings.sources[at].may_bound_nothing = true;  // above a free surface, for instance
+    settings.faces[at].may_bound_nothing = true;  // above a free surface, for instance
     if (parts > 1) settings.faces[at].name = face.name + "_" + std::to_string(part + 1);
   }
 }
@@ -174,6 +175,25 @@ void become_box(PfvSettings& settings, const std::array<std::optional<std::size_
     if (source.kind == Source::plane) source.plane = source.surface.offset * source.surface.normal[axis];
     settings.box.faces[face].wall = before.faces[*chosen[face]].wall;
     settings.box.faces[face].boundary = before.faces[*chosen[face]].boundary;
+  }
+}
+
+/// Each patch is on a face that there is, or that has become one of a box.
+void check_patches(PfvSettings& settings) {
+  pfv::Container container = settings.box;
+  if (settings.container) container.faces = settings.faces;
+  for (const PfvPatch& part : settings.patches) {
+    const std::optional<int> face = container.face_named(part.face);
+    if (!face) {
+      std::string names;
+      for (const pfv::ContainerFace& one : container.faces) names += (names.empty() ? "" : ", ") + one.name;
+      throw pfv::InputError("patch: there is no face '" + part.face + "'; there are " + names);
+    }
+    if (settings.container) continue;
+    const int axis = *face / 2, a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
+    const pfv::ContainerPatch& patch = part.patch;
+    settings.box.patches.push_back({static_cast<pfv::Face>(*face),
+                                    {patch.lower[a], patch.upper[a], patch.lower[b], patch.upper[b]}, patch.boundary});
   }
 }
 
@@ -253,8 +273,12 @@ std::string PfvFoundWalls::reason_to_leave_out(const PfvWall& wall) const {
   // a single plane does not say on which side the fluid is
   if (surfaces.size() == 1 && surfaces[0].is_plane() && beyond > within) std::swap(within, beyond);
   if (beyond <= among_grains * static_cast<double>(within + beyond)) return {};
+  const bool inner = !wall.mesh && surfaces.size() == 1 && !surfaces[0].is_plane();
   return what + "has " + std::to_string(beyond) + " of " + std::to_string(within + beyond) + " grains on its other side" +
-         (wall.mesh ? "; if it stands among the grains, `obstacle mesh " + wall.id + "` makes the fluid see it" : std::string());
+         (wall.mesh ? "; if it stands among the grains, `obstacle mesh " + wall.id + "` makes the fluid see it"
+          : inner   ? "; if it stands among the grains, as the inner cylinder of an annulus, take a mesh of its shape in its "
+                      "place, and `obstacle mesh ID` for the fluid to see it"
+                    : std::string());
 }
 
 void PfvFoundWalls::add_walls(PfvSettings& settings, std::vector<std::string>& left_out) const {
@@ -278,9 +302,9 @@ void PfvFoundWalls::add_walls(PfvSettings& settings, std::vector<std::string>& l
     pfv::ContainerFace face;
     face.name = wall.id;
     face.wall = *settings.all_walls;
+    face.may_bound_nothing = true;
     settings.faces.push_back(face);
     settings.sources.push_back(source);
-    settings.sources.back().may_bound_nothing = true;
   }
   for (std::size_t f = 0; f < settings.faces.size(); ++f)
     if (settings.sources[f].kind == Source::none)
@@ -431,11 +455,13 @@ std::vector<std::string> PfvFoundWalls::complete(PfvSettings& settings) const {
   std::vector<Surfaces> surfaces = surfaces_of_faces(settings, round);
   if (settings.box.any_periodic()) {
     make_cell(settings, surfaces, named, left_out);
+    check_patches(settings);
     return left_out;
   }
   if (settings.all_walls) drop_walls_that_bound_nothing(settings, surfaces, named, left_out);
   if (!cylinders_fit(surfaces) || grains_lie_aside(surfaces)) surfaces = surfaces_of_faces(settings, pfv::RoundMeshes::as_flats);
   split_walls(settings, surfaces, left_out);
+  check_patches(settings);
   if (settings.faces.size() >= 3) return left_out;
   std::string text = "container: it has " + std::to_string(settings.faces.size()) + " faces and takes 3 or more; " +
                      (settings.all_walls ? "give each side that no fix wall/gran of the script closes `face NAME (plane X Y Z "

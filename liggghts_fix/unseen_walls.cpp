@@ -71,6 +71,8 @@ Deepest deepest_in(const pfv::Container& container, const std::vector<pfv::Trian
 std::string remedy(const pfv::Container& container, const PfvUnseenWall& wall) {
   if (container.any_periodic()) return "; a periodic cell has plane walls normal to its other axes alone";
   const std::string obstacle = wall.surface.empty() ? "`obstacle mesh " + wall.id + "` makes it a body among the grains" : "";
+  if (!container.is_box && !wall.surface.empty() && !wall.surface[0].is_plane())
+    return "; if it stands among the grains, take a mesh of its shape in its place, and `obstacle mesh ID`";
   if (!container.is_box) return obstacle.empty() ? "; give the container a face for it" : "; " + obstacle;
   return "; take `container walls`, or a `container` with a face for this wall, if it bounds the fluid" +
          (obstacle.empty() ? "" : "; " + obstacle);

@@ -51,18 +51,12 @@ void apply_periodic(const SolveArguments& arguments, Box& box) {
     throw InputError("--tilt: the cell is that of the dump, with its tilt: leave it away");
   for (std::size_t k = 0; k < arguments.tilt.size(); ++k)
     box.tilt[static_cast<Eigen::Index>(k)] = number("--tilt", arguments.tilt[k]);
-  for (const std::string& axis : of_dump ? std::vector<std::string>{} : arguments.periodic) {
-    if (axis != "x" && axis != "y" && axis != "z")
-      throw InputError("--periodic: unknown axis " + detail::quoted(axis) +
-                       ": give some of x, y, z, with commas between them, or dump alone");
-    bool& periodic = box.periodic[axis[0] - 'x'];
-    if (periodic) throw InputError("--periodic: axis " + axis + " occurs twice");
+  if (!of_dump && !arguments.periodic.empty()) {
+    box.periodic = periodic_axes(arguments);
     if (box_is_auto(arguments))
       throw InputError("--periodic: the extent of the spheres is no period: give the cell with --box");
-    periodic = true;
   }
-  for (std::size_t axis = 0; axis < arguments.gradient.size(); ++axis)
-    box.pressure_gradient[static_cast<int>(axis)] = number("--gradient", arguments.gradient[axis]);
+  box.pressure_gradient = gradient_of(arguments);
 }
 
 /// The simulation box that the file states.
@@ -90,6 +84,26 @@ std::string text_of(const PackingBounds& bounds) {
 }
 
 }  // namespace
+
+std::array<bool, 3> periodic_axes(const SolveArguments& arguments) {
+  std::array<bool, 3> axes{};
+  for (const std::string& axis : arguments.periodic) {
+    if (axis != "x" && axis != "y" && axis != "z")
+      throw InputError("--periodic: unknown axis " + detail::quoted(axis) +
+                       ": give some of x, y, z, with commas between them, or dump alone");
+    bool& periodic = axes[static_cast<std::size_t>(axis[0] - 'x')];
+    if (periodic) throw InputError("--periodic: axis " + axis + " occurs twice");
+    periodic = true;
+  }
+  return axes;
+}
+
+Eigen::Vector3d gradient_of(const SolveArguments& arguments) {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  for (std::size_t axis = 0; axis < arguments.gradient.size(); ++axis)
+    gradient[static_cast<Eigen::Index>(axis)] = number("--gradient", arguments.gradient[axis]);
+  return gradient;
+}
 
 bool periodic_as_dump(const SolveArguments& arguments) {
   return arguments.periodic == std::vector<std::string>{"dump"};

@@ -121,15 +121,12 @@ Boundary required_boundary(const std::string& where, const std::string& item, co
 ContainerPatch patch_of(const std::string& argument, const Container& container) {
   const std::string where = "--patch " + detail::quoted(argument);
   const std::vector<std::string> fields = parts(argument, ':');
-  if (fields.size() != 3) fail(where, "write NAME:A0,A1,B0,B1:ITEM");
-  const std::vector<std::string> rectangle = parts(fields[1], ',');
-  if (rectangle.size() != 4) fail(where, "a rectangle has four numbers: write A0,A1,B0,B1");
-  ContainerPatch patch;
-  patch.face = face_of(where, fields[0], container);
-  for (std::size_t k = 0; k < rectangle.size(); ++k)
-    patch.rectangle[k] = number(where, rectangle[k]);
-  patch.boundary = required_boundary(where, fields[2], boundary_items());
-  return patch;
+  if (fields.size() != 3) fail(where, "write NAME:A0,A1,B0,B1:ITEM or NAME:X0,X1,Y0,Y1,Z0,Z1:ITEM");
+  const std::vector<std::string> texts = parts(fields[1], ',');
+  const int face = face_of(where, fields[0], container);
+  std::vector<double> bounds;
+  for (const std::string& text : texts) bounds.push_back(number(where, text));
+  return patch_on(container, face, bounds, required_boundary(where, fields[2], boundary_items()));
 }
 
 /// `form`: how the argument is written, with as many names of numbers as `count`.

@@ -78,10 +78,11 @@ void add_face_options(CLI::App& command, SolveArguments& arguments, const std::s
                                 "(default: sealed, at rest)"))
       ->option_text("NAME:ITEM[,ITEM]...")->group(group);
   repeatable(command.add_option("--patch", arguments.patches,
-                     "rectangle on a face, may be given several times: its extent (m)\n"
-                                "along the two other axes in the order x y z, and one of\n"
+                     "part of a face, may be given several times: the extent (m) of a\n"
+                                "rectangle along the two other axes in the order x y z, or of a\n"
+                                "block of space that cuts it out of any face, and one of\n"
                                 "pressure=P (Pa) | flux=Q (m3/s) | sealed (default: none)"))
-      ->option_text("NAME:A0,A1,B0,B1:ITEM")->group(group);
+      ->option_text("NAME:A0,A1,B0,B1:ITEM or NAME:X0,X1,Y0,Y1,Z0,Z1:ITEM")->group(group);
   repeatable(command.add_option("--region", arguments.regions,
                      "pores inside the packing, for instance a well, may be given several\n"
                                 "times: extent (m) and pressure=P (Pa) | flux=Q (m3/s, positive\n"
@@ -99,7 +100,8 @@ void add_cell_options(CLI::App& command, SolveArguments& arguments, const std::s
   command.add_option("--periodic", arguments.periodic,
                      "axes along which the packing repeats, or `dump`: those of the\n"
                      "dump's simulation box, with their bounds (--box is needed where\n"
-                     "an axis is not periodic) (default: none)")
+                     "an axis is not periodic); of a container those between two planes\n"
+                     "that nothing else crosses (default: none)")
       ->delimiter(',')->allow_extra_args(false)->option_text("x,y,z|dump")->group(group);
   command.add_option("--tilt", arguments.tilt,
                      "how far a tilted periodic cell leans, m: xy, the way of its upper y\n"
@@ -136,9 +138,12 @@ Container container_of(const SolveArguments& arguments) {
   if (arguments.container && has_box)
     throw InputError("--box and --container exclude each other: give one of them");
   if (!arguments.container && !has_box) refuse_without_box(arguments);
-  if (arguments.container && (!arguments.periodic.empty() || !arguments.gradient.empty() || !arguments.tilt.empty()))
-    throw InputError("--periodic, --tilt and --gradient need a --box");
+  if (arguments.container && !arguments.tilt.empty()) throw InputError("--tilt needs a --box");
   Container container = arguments.container ? read_container(*arguments.container) : Container(box_of(arguments));
+  if (arguments.container) {
+    container.periodic = periodic_axes(arguments);
+    container.pressure_gradient = gradient_of(arguments);
+  }
   apply_faces(arguments.faces, wall_named("--wall", arguments.wall), container);
   apply_patches(arguments.patches, container);
   apply_regions(arguments.regions, arguments.points, container);

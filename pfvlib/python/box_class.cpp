@@ -2,114 +2,16 @@
 // pfv.Box
 #include "arrays.hpp"
 #include "classes.hpp"
+#include "conditions.hpp"
 #include "faces.hpp"
 #include "keywords.hpp"
 
 #include "pfv/words.hpp"
 
-#include <cmath>
-#include <memory>
 #include <pybind11/stl.h>
 
 namespace pfv::python {
 namespace {
-
-// --------------------------------------------------------------------------------------- numbers
-
-/// One for each axis or face: n x 2 numbers, as lower and upper.
-std::vector<std::array<double, 2>> intervals_of(py::handle given, const char* name, py::ssize_t count) {
-  const auto numbers = reals_of(given, name);
-  if (numbers.ndim() != 2 || numbers.shape(0) != count || numbers.shape(1) != 2)
-    throw InputError(std::string(name) + ": give " + std::to_string(count) + " intervals [lower, upper], m");
-  std::vector<std::array<double, 2>> intervals;
-  for (py::ssize_t k = 0; k < count; ++k) intervals.push_back({numbers.at(k, 0), numbers.at(k, 1)});
-  return intervals;
-}
-
-/// "xy", "x,y", ("x", "y"): axes along which the packing repeats.
-std::array<bool, 3> periodic_of(py::handle given) {
-  std::array<bool, 3> periodic{};
-  for (const py::handle part : given) {
-    const auto axis = part.cast<std::string>();
-    if (axis == "," || axis == " ") continue;
-    if (axis != "x" && axis != "y" && axis != "z")
-      throw InputError("periodic: there is no axis '" + axis + "': give some of x, y, z");
-    periodic[static_cast<std::size_t>(axis[0] - 'x')] = true;
-  }
-  return periodic;
-}
-
-std::string periodic_text(const Box& box) {
-  std::string text;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (box.periodic[axis]) text += "xyz"[axis];
-  return text;
-}
-
-// ------------------------------------------------------------------------------------- boundaries
-
-/// A function of Python. The copies that the library makes of it share one reference, so that none of them
-/// touches the interpreter's counts without its lock.
-std::function<double(const Eigen::Vector3d&, double)> profile_of(const py::function& function) {
-  const std::shared_ptr<py::function> shared(new py::function(function), [](py::function* last) {
-    const py::gil_scoped_acquire lock;
-    delete last;
-  });
-  return [shared](const Eigen::Vector3d& place, double time) {
-    const py::gil_scoped_acquire lock;
-    const py::object pressure = (*shared)(array_of(place), time);
-    const double value = PyFloat_AsDouble(pressure.ptr());
-    if (PyErr_Occurred()) throw py::error_already_set();
-    if (!std::isfinite(value)) throw InputError("the function of a pressure returned a number that is not finite");
-    return value;
-  };
-}
-
-Boundary boundary_of(const BoundaryKind& kind, py::handle value) {
-  Boundary boundary{kind.kind, 0.0, {}};
-  if (!kind.symbol) return boundary;
-  if (kind.kind == Boundary::Kind::pressure && py::isinstance<py::function>(value))
-    boundary.profile = profile_of(py::reinterpret_borrow<py::function>(value));
-  else
-    boundary.value = number_of(value, kind.name);
-  return boundary;
-}
-
-std::vector<std::string> boundary_names() {
-  std::vector<std::string> names;
-  for (const BoundaryKind& kind : boundary_kinds) names.emplace_back(kind.name);
-  return names;
-}
-
-/// The boundary among the keywords of a face, patch or region.
-std::optional<Boundary> boundary_among(const std::string& function, const py::kwargs& keywords) {
-  std::optional<Boundary> boundary;
-  for (const BoundaryKind& kind : boundary_kinds) {
-    if (!keywords.contains(kind.name)) continue;
-    if (!kind.symbol && !py::bool_(keywords[kind.name])) continue;  // sealed=False
-    if (boundary) throw InputError(function + ": give one of sealed, pressure, flux");
-    boundary = boundary_of(kind, keywords[kind.name]);
-  }
-  return boundary;
-}
-
-Boundary required_boundary(const std::string& function, const py::kwargs& keywords) {
-  for (const auto& item : keywords)
-    require_known(function, item.first.cast<std::string>(), boundary_names());
-  const auto boundary = boundary_among(function, keywords);
-  if (!boundary) throw InputError(function + ": give its pressure (Pa), its flux (m3/s) or sealed=True");
-  return *boundary;
-}
-
-py::dict dict_of(const Boundary& boundary) {
-  py::dict dict;
-  for (const BoundaryKind& kind : boundary_kinds)
-    if (kind.kind == boundary.kind)
-      dict[kind.name] = !kind.symbol ? py::object(py::bool_(true))
-                        : boundary.profile ? py::object(py::str("a function"))
-                                           : py::object(py::float_(boundary.value));
-  return dict;
-}
 
 // ------------------------------------------------------------------------------------------ faces
 
@@ -118,9 +20,7 @@ const std::vector<std::string> conditions{"wall", "velocity", "sliding", "spin",
 /// Only what is named changes.
 void set_face(Box& box, const std::string& name, const py::kwargs& keywords) {
   FaceCondition face = condition_of(box, name);
-  std::vector<std::string> known = boundary_names();
-  known.insert(known.end(), conditions.begin(), conditions.end());
-  for (const auto& item : keywords) require_known("face()", item.first.cast<std::string>(), known);
+  require_conditions(keywords, conditions);
   if (const auto boundary = boundary_among("face()", keywords)) face.boundary = *boundary;
   const auto given = [&](const char* key) { return keywords.contains(key); };
   if (given("wall")) face.wall = named<Wall>(py::str(keywords["wall"]));
@@ -198,7 +98,7 @@ std::string text_of(const Box& box) {
   for (int axis = 0; axis < 3; ++axis)
     text << (axis ? ", " : "") << '[' << box.lower[axis] << ", " << box.upper[axis] << ']';
   text << ']';
-  if (box.any_periodic()) text << ", periodic='" << periodic_text(box) << '\'';
+  if (box.any_periodic()) text << ", periodic='" << periodic_text(box.periodic) << '\'';
   if (box.is_tilted()) text << ", tilt=(" << box.tilt[0] << ", " << box.tilt[1] << ", " << box.tilt[2] << ')';
   text << ')';
   return text.str();
@@ -214,13 +114,7 @@ void add_conditions(py::class_<Box>& box) {
             add_patch(self.cast<Box&>(), name, rectangle, keywords);
             return self;
           }, "name"_a, "rectangle"_a, patch_text);
-  box.def("region", [](py::object self, py::object lower, py::object upper, const py::kwargs& keywords) {
-            self.cast<Box&>().regions.push_back({vector_of(lower, "lower"), vector_of(upper, "upper"),
-                                                 required_boundary("region()", keywords)});
-            return self;
-          }, "lower"_a, "upper"_a, R"(Gives the pores between two corners (m) a pressure or a flux; returns the box.
-
-With lower = upper it is the pore nearest to that point.)");
+  box.def("region", &region_added<Box>, "lower"_a, "upper"_a, region_text);
 }
 
 void add_measures(py::class_<Box>& box) {
@@ -237,7 +131,7 @@ void add_measures(py::class_<Box>& box) {
   box.def_property("tilt", [](const Box& self) { return array_of(self.tilt); },
                    [](Box& self, py::object components) { self.tilt = vector_of(components, "tilt"); },
                    "How far the cell leans, m: xy, xz, yz; a copy; assign to change it.");
-  box.def_property_readonly("periodic", &periodic_text, "Axes along which the packing repeats: \"xy\".");
+  box.def_property_readonly("periodic", [](const Box& self) { return periodic_text(self.periodic); }, "Axes along which the packing repeats: \"xy\".");
   box.def_property_readonly("faces", &faces_of, "{name: {condition: value}} of all faces.");
   box.def_property_readonly("volume", &Box::volume, "m3");
   box.def("position", &position_of, "name"_a, "Place of a face on its axis, m.");
@@ -263,7 +157,8 @@ Box make_box(py::handle bounds, const std::string& wall, py::handle periodic) {
   return box;
 }
 
-Box box_of(py::handle given) {
+Container container_of(py::handle given) {
+  if (py::isinstance<Container>(given)) return given.cast<Container>();
   if (py::isinstance<Box>(given)) return given.cast<Box>();
   return make_box(given, name_of(Wall::no_slip), py::str(""));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pfv/box.hpp"
+#include "pfv/container.hpp"
 
 #include <pybind11/pybind11.h>
 #include <string>
@@ -12,6 +13,7 @@ namespace pfv::python {
 namespace py = pybind11;
 
 void add_box_class(py::module_& module);
+void add_container_class(py::module_& module);
 void add_fluid_class(py::module_& module);
 void add_packing_class(py::module_& module);
 void add_network_class(py::module_& module);
@@ -22,7 +24,7 @@ void add_grain_stresses(py::module_& module);
 
 /// [[xlo, xhi], [ylo, yhi], [zlo, zhi]], all faces sealed. Throws InputError.
 Box make_box(py::handle bounds, const std::string& wall, py::handle periodic);
-/// A Box, or the bounds of one whose faces are sealed and no-slip.
-Box box_of(py::handle given);
+/// Of a Container, a Box, or the bounds of one whose faces are sealed and no-slip. Throws InputError.
+Container container_of(py::handle given);
 
 }  // namespace pfv::python

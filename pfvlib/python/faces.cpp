@@ -3,10 +3,17 @@
 
 namespace pfv::python {
 
-std::vector<std::string> face_names(const Box&) {
+std::vector<std::string> face_names(const Container& container) {
   std::vector<std::string> names;
-  for (const Face face : all_faces) names.emplace_back(name_of(face));
+  for (const ContainerFace& face : container.faces) names.push_back(face.name);
   return names;
+}
+
+int face_of(const Container& container, const std::string& name) {
+  if (const std::optional<int> face = container.face_named(name)) return *face;
+  std::string names;
+  for (const std::string& known : face_names(container)) names += (names.empty() ? "" : ", ") + known;
+  throw InputError("there is no face '" + name + "': give " + names);
 }
 
 FaceCondition& condition_of(Box& box, const std::string& name) { return box[named<Face>(name)]; }
@@ -30,12 +37,12 @@ Piston piston_of(py::handle given) {
 
 }  // namespace
 
-Pistons pistons_of(const Box&, py::handle given) {
-  Pistons pistons(all_faces.size());
+Pistons pistons_of(const Container& container, py::handle given) {
+  Pistons pistons(container.faces.size());
   if (given.is_none()) return pistons;
   if (!py::isinstance<py::dict>(given)) throw py::type_error("pistons: give a dict {face: mass}");
   for (const auto& [name, piston] : py::reinterpret_borrow<py::dict>(given)) {
-    const auto face = static_cast<std::size_t>(named<Face>(name.cast<std::string>()));
+    const auto face = static_cast<std::size_t>(face_of(container, name.cast<std::string>()));
     try {
       pistons[face] = piston_of(piston);
     } catch (const py::cast_error&) {

@@ -25,7 +25,7 @@ std::unique_ptr<FlowHost> make_host(py::handle box, const Fluid* fluid, const py
   }
   settle(settings);
   check(settings);
-  return std::make_unique<FlowHost>(box_of(box), settings);
+  return std::make_unique<FlowHost>(container_of(box), settings);
 }
 
 // ------------------------------------------------------------------------------------------ steps
@@ -55,7 +55,7 @@ py::array advance(FlowHost& host, const GivenGrains& given, double dt, const std
                   const GivenDynamics& of_grains, bool commit) {
   const Grains grains(given);
   std::optional<Dynamics> dynamics;
-  if (!of_grains.masses.is_none()) dynamics.emplace(of_grains, grains.count(), host.box());
+  if (!of_grains.masses.is_none()) dynamics.emplace(of_grains, grains.count(), host.container());
   Step step;
   step.coupling = coupling_of(host, coupling);
   step.dynamics = dynamics ? &dynamics->get() : nullptr;
@@ -71,7 +71,7 @@ py::array advance(FlowHost& host, const GivenGrains& given, double dt, const std
 double limit_of(FlowHost& host, py::handle given, py::handle of_faces, const std::vector<RigidBody>& bodies) {
   const auto numbers = reals_of(given, "masses");
   const Eigen::VectorXd masses = vector_of(numbers);
-  const Pistons pistons = pistons_of(host.box(), of_faces);
+  const Pistons pistons = pistons_of(host.container(), of_faces);
   return host.ask([&](FlowModel& model) { return model.time_step_limit(masses, pistons, bodies); });
 }
 
@@ -84,7 +84,8 @@ coupling: "explicit", "staged", "implicit" or "auto" (None: Flow's keyword coupl
 masses: N, kg (inf: a grain whose velocity is prescribed); all but explicit steps need them
 other_forces: N x 3, N, beside the fluid's: contacts, gravity (None: none); other_torques: N x 3, N m
 inertias: N, kg m2 (None: 2/5 m r2)
-pistons: {face: mass} or {face: (mass, other_force)} of faces that move freely, kg, N along +axis
+pistons: {face: mass} or {face: (mass, other_force)} of faces that move freely, kg, N along +axis, of a Container along
+    the plane's inward normal
 angular_velocities: N x 3, rad/s, read where Flow was given torques=True
 ids: N whole numbers, unique, which errors name (None: the numbers of the rows, from 0)
 displaced_volumes: N, m3, that the lift counts (None: whole spheres)
@@ -141,9 +142,9 @@ void add_evaluations(py::class_<FlowHost>& flow) {
   flow.def("rebuild", [](FlowHost& host) { host.run([](FlowModel& model) { model.rebuild(); }); },
            "Discards the network; the next step triangulates anew.");
   flow.def("set_box", [](FlowHost& host, py::object given) {
-             const Box box = box_of(given);
-             host.run([&box](FlowModel& model) { model.set_box(box); });
-           }, "box"_a, R"(New places, velocities or boundary values of faces, patches, regions.
+             const Container container = container_of(given);
+             host.run([&container](FlowModel& model) { model.set_container(container); });
+           }, "box"_a, R"(New places, velocities or boundary values of faces, patches, regions: a Box, bounds or Container.
 
 Values cost nothing; another kind of boundary, another wall or other extents lead to a new network. A face that
 moves by its velocity over the steps keeps it until the strain asks for another.)");
@@ -213,7 +214,7 @@ std::string class_text() {
     flow = pfv.Flow(box, pfv.Fluid(viscosity=1e-3), solver="cholmod")
     forces = flow.advance(positions, radii, velocities, dt)
 
-box: a Box, or [[xlo, xhi], [ylo, yhi], [zlo, zhi]] (m) with sealed faces
+box: a Box, a Container, or [[xlo, xhi], [ylo, yhi], [zlo, zhi]] (m) with sealed faces
 fluid: a Fluid, or its keywords among the others
 
 The first step builds the network of pores and factors its matrix; later ones keep both until the grains have moved

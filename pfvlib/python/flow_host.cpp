@@ -10,9 +10,9 @@ void LentForces::take_over() {
   model_.reset();
 }
 
-FlowHost::FlowHost(const Box& box, const Settings& settings)
+FlowHost::FlowHost(const Container& container, const Settings& settings)
     : settings_(settings),
-      model_(make_flow(box, settings.fluid, settings.options, settings.grid())) {}
+      model_(make_flow(container, settings.fluid, settings.options, settings.grid())) {}
 
 FlowHost::Turn::Turn(bool& busy) : busy_(busy) {
   if (busy) throw InputError("another thread works on this flow: wait for it, or give each thread a Flow of its own");
@@ -45,8 +45,8 @@ std::shared_ptr<LentForces> FlowHost::forces() {
   return lent_;
 }
 
-Box FlowHost::box() {
-  return run([](FlowModel& model) { return *pfv::box_of(model.container()); });
+Container FlowHost::container() {
+  return run([](FlowModel& model) { return model.container(); });
 }
 
 }  // namespace pfv::python

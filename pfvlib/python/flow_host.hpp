@@ -29,7 +29,7 @@ class LentForces {
 
 class FlowHost {
  public:
-  FlowHost(const Box& box, const Settings& settings);
+  FlowHost(const Container& container, const Settings& settings);
 
   /// A step: forces after it. Throws as FlowModel::advance.
   void advance(const Grains& grains, double dt, const Step& step);
@@ -61,7 +61,7 @@ class FlowHost {
   /// Forces of the last step and what keeps them, for arrays.
   std::shared_ptr<LentForces> forces();
   const Settings& settings() const { return settings_; }
-  Box box();
+  Container container();
 
  private:
   /// One thread at a time; counted under the interpreter's lock.

@@ -60,13 +60,19 @@ py::dict dict_of(const FaceResult& face) {
 }
 
 py::dict face_results_of(FlowHost& host) {
-  return by_face(host.box(), host.ask([](FlowModel& model) { return model.faces(); }),
+  return by_face(host.container(), host.ask([](FlowModel& model) { return model.faces(); }),
                  [](const FaceResult& face) { return dict_of(face); });
 }
 
 py::dict face_forces_of(FlowHost& host) {
-  return by_face(host.box(), host.ask([](FlowModel& model) { return model.face_forces(); }),
+  return by_face(host.container(), host.ask([](FlowModel& model) { return model.face_forces(); }),
                  [](const Eigen::Vector3d& force) { return array_of(force); });
+}
+
+py::object box_or_container(FlowHost& host) {
+  const Container container = host.container();
+  const std::optional<Box> box = box_of(container);
+  return box ? py::cast(*box) : py::cast(container);
 }
 
 py::dict slice_means(FlowHost& host, py::handle given, double lower, double upper) {
@@ -114,7 +120,7 @@ void add_values(py::class_<FlowHost>& flow) {
   flow.def_property_readonly("coupling", value([](FlowModel& m) { return name_of(m.coupling()); }),
                              "Coupling of the last step.");
   flow.def_property_readonly("stages", value([](FlowModel& m) { return m.stages(); }), "Its sub-stages.");
-  flow.def_property_readonly("box", &FlowHost::box, "A copy of the box; hand it to `set_box` to change it.");
+  flow.def_property_readonly("box", &box_or_container, "A copy of the Box or Container; hand it to `set_box` to change it.");
   flow.def_property_readonly("fluid", [](FlowHost& host) { return host.settings().fluid; }, "The fluid.");
   flow.def_property_readonly("hidden", [](FlowHost& host) {
                                return array_of(host.ask([](FlowModel& m) { return m.hidden(); }));
@@ -185,7 +191,7 @@ Cost: three solves a sphere.)");
 void add_network(py::class_<FlowHost>& flow) {
   flow.def("network", [](FlowHost& host) {
              return std::make_unique<NetworkArrays>(
-                 host.ask_of<Flow>([](Flow& f) { return f.network(); }), face_names(host.box()));
+                 host.ask_of<Flow>([](Flow& f) { return f.network(); }), face_names(host.container()));
            }, "The network in use, a copy: it stays as it is when the flow builds another.");
   flow.def("throat_conductances", copied<Flow>([](Flow& f) { return f.throat_conductances(); }),
            "g/L of each throat, m3/(Pa s).");

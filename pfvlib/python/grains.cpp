@@ -46,7 +46,7 @@ Packing Grains::packing() const {
           {bodies_.data(), bodies_.size()}};
 }
 
-Dynamics::Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Box& box) {
+Dynamics::Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Container& container) {
   look_at(dynamics_.masses, each(given.masses, "masses", spheres));
   if (given.other_forces.is_none()) {
     Numbers<double> none(std::vector<py::ssize_t>{spheres, 3});
@@ -59,7 +59,7 @@ Dynamics::Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Box& b
   if (!given.other_torques.is_none())
     look_at(dynamics_.other_torques, rows(given.other_torques, "other_torques", spheres));
   if (!given.inertias.is_none()) look_at(dynamics_.inertias, each(given.inertias, "inertias", spheres));
-  dynamics_.pistons = pistons_of(box, given.pistons);
+  dynamics_.pistons = pistons_of(container, given.pistons);
   dynamics_.bodies = given.bodies;
 }
 

@@ -42,7 +42,7 @@ struct GivenDynamics {
 /// What staged and implicit steps must know of the grains, with the arrays that it looks at.
 class Dynamics {
  public:
-  Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Box& box);
+  Dynamics(const GivenDynamics& given, py::ssize_t spheres, const Container& container);
 
   const GrainDynamics& get() const { return dynamics_; }
 

@@ -15,6 +15,7 @@ PYBIND11_MODULE(_pfv, module) {
   module.attr("__version__") = pfv::version;
   translate_errors();
   add_box_class(module);
+  add_container_class(module);
   add_fluid_class(module);
   add_packing_class(module);
   add_network_class(module);

@@ -42,6 +42,22 @@ class Containers(CoupledTest):
         coupled = forces(read_dump(self.folder / "walls.dump")[0])
         self.assertLess(largest_difference(coupled, static), 1e-12)
 
+    def test_a_patch_on_the_shell_is_that_of_the_command(self):
+        write_data(self.folder, in_pipe(packing(8)))
+        block = (MIDDLE, EDGE, 0.03, 0.07, 0.02, 0.06)
+        flow = f"fix flow all pfv {IN_PIPE.replace('roof pressure 0', 'roof')} patch %s {' '.join(map(str, block))} pressure 0\n"
+        self.liggghts(HEAD + PIPE + flow % "side" + dump("walls.dump") + "run 0\n")
+        container = {"planes": [{"name": "bottom", "inward_normal": [0, 0, 1], "offset": 0.0},
+                     {"name": "top", "inward_normal": [0, 0, -1], "offset": -EDGE}],
+                     "cylinders": [{"name": "side", "axis": [0, 0, 1], "point": [MIDDLE, MIDDLE, 0.0],
+                     "radius": RADIUS}]}
+        static = self.pfv_forces("walls.dump", "--face", "bottom:pressure=10",
+                                 "--patch", f"side:{','.join(map(str, block))}:pressure=0", container=container)
+        coupled = forces(read_dump(self.folder / "walls.dump")[0])
+        self.assertLess(largest_difference(coupled, static), 1e-12)
+        self.assertGreater(max(abs(force[0]) for force in coupled.values()), 1e-6)  # it goes out on one side
+        self.refused(HEAD + PIPE + flow % "lid" + "run 0\n", "there is no face 'lid'; there are side, bottom, top")
+
     def test_six_walls_are_the_box(self):
         walls = "".join(f"fix w{a}{k} all {MODEL} primitive type 1 {a}plane {k * EDGE}\n"
                         for a in "xyz" for k in (0, 1))

@@ -128,6 +128,10 @@ class Walls(CoupledTest):
         self.assertIn("held by 6 walls", said)
         self.assertRegex(said, r"left out: mesh 'paddle' has \d+ of 125 grains on its other side")
         self.assertRegex(said, r"WARNING.*mesh 'paddle' stands in the fluid, which does not see it: it reaches 0.05 m")
+        core = f"fix core all {MODEL} primitive type 1 zcylinder 0.012 {MIDDLE} {MIDDLE}\n"
+        said = self.liggghts(HEAD + sides + ENDS + core + self.flow(PRESSURES) + "run 0\n")
+        self.assertRegex(said, r"left out: wall 'core' has \d+ of 125 grains on its other side; .*`obstacle mesh ID`")
+        self.assertRegex(said, r"WARNING.*wall 'core' .*take a mesh of its shape")
         box, said = self.first_forces(HEAD + mesh("paddle") + f"fix flow all pfv {FLOW}\n", "box.dump")
         self.assertRegex(said, r"WARNING.*mesh 'paddle' stands in the fluid")
 

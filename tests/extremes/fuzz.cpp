@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fuzz --count N --seed S [--first K]: N packings that look for trouble, each under boundaries, fluid
-// and options of its own, at rest and moving. Each either flows, finite and balanced, or is refused
-// with one line. Prints what happened to each kind and the number of every case that failed; status
-// 1 if any did. Case K of a seed is always the same: --first K --count 1 repeats it.
+// fuzz --count N --seed S [--first K] (support/fuzzing.hpp): N packings that look for trouble, each under boundaries,
+// fluid and options of its own, at rest and moving.
 #include "pfv/pfv.hpp"
 #include "support/long_steps.hpp"
 #include "support/adversarial.hpp"
+#include "support/fuzzing.hpp"
 
 #include <algorithm>
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
 #include <sstream>
 #include <string>
-#include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -179,19 +174,8 @@ std::string description(const Case& c) {
 
 // ------------------------------------------------------------------------------------- the checks
 
-struct Worst {
-  double mass = 0.0, balance = 0.0;
-  std::uint64_t mass_case = 0, balance_case = 0;
-};
-
-struct Outcome {
-  bool refused = false;
-  std::string message, failure;
-  double mass = 0.0, balance = 0.0;
-  void fail(const std::string& what) {
-    if (failure.empty()) failure = what;
-  }
-};
+using fuzzing::all_finite;
+using fuzzing::Outcome;
 
 /// Without motion, fluxes or storage no pressure leaves the range of those imposed.
 void check_range(const Case& c, const pfv::Flow& flow, Outcome& outcome) {
@@ -209,15 +193,6 @@ void check_range(const Case& c, const pfv::Flow& flow, Outcome& outcome) {
   if (flow.pore_pressures().minCoeff() < low - hair ||
       flow.pore_pressures().maxCoeff() > high + hair)
     outcome.fail("a pressure outside the range of those imposed");
-}
-
-bool all_finite(const pfv::Report& r) {
-  double sum = r.porosity + r.pore_volume + r.solid_area + r.inflow + r.outflow +
-               r.volume_rate_sum + r.storage_rate + r.mass_error + r.force_balance_error +
-               r.residual + r.permeability.value_or(0.0) + r.force_sum.sum();
-  for (const pfv::FaceResult& face : r.faces)
-    sum += face.flux + face.force_pressure.sum() + face.force_viscous.sum();
-  return std::isfinite(sum);
 }
 
 void check_result(const Case& c, const pfv::Flow& flow, bool at_rest, Outcome& outcome) {
@@ -276,17 +251,7 @@ constexpr double largest_balance_error = 1e-12;
 constexpr double largest_periodic_balance_error = 1e-9;
 
 Outcome examine(Case c) {
-  Outcome outcome;
-  try {
-    run_flow(c, outcome);
-  } catch (const pfv::Error& error) {
-    outcome.refused = true;
-    outcome.message = error.what();
-    if (outcome.message.size() < 20 || outcome.message.find('\n') != std::string::npos)
-      outcome.fail("an error that helps nobody: " + outcome.message);
-  } catch (const std::exception& other) {
-    outcome.fail(std::string("an error that is not the library's own: ") + other.what());
-  }
+  Outcome outcome = fuzzing::examine([&](Outcome& of) { run_flow(c, of); });
   if (outcome.mass > largest_mass_error)
     outcome.fail("mass error " + std::to_string(outcome.mass));
   if (outcome.balance >
@@ -295,83 +260,10 @@ Outcome examine(Case c) {
   return outcome;
 }
 
-// ------------------------------------------------------------------------------------- the program
-
-volatile std::uint64_t running = 0;
-constexpr unsigned hang = 120;  // s; guards against a case that never ends
-
-extern "C" void say_which(int signal) {
-  char text[80];
-  const int length = std::snprintf(text, sizeof text, "fuzz: signal %d in case %llu\n", signal,
-                                   static_cast<unsigned long long>(running));
-  if (write(2, text, static_cast<std::size_t>(length)) < 0) _exit(3);
-  _exit(2);
-}
-
-/// What comes before the first number of a message: enough to count messages of one sort.
-std::string sort_of(const std::string& message) {
-  return message.substr(0, std::min<std::size_t>(message.find_first_of("0123456789("), 60));
-}
-
-struct Tally {
-  std::array<int, adversarial::kinds.size()> flows{}, refusals{}, failures{};
-  std::map<std::string, int> messages;
-  Worst worst;
-  int failed = 0;
-
-  void add(std::uint64_t number, const Case& c, const Outcome& o) {
-    if (!o.failure.empty()) {
-      std::printf("case %llu: %s (%s)\n", static_cast<unsigned long long>(number),
-                  o.failure.c_str(), description(c).c_str());
-      ++failures[c.kind];
-      ++failed;
-    }
-    ++(o.refused ? refusals : flows)[c.kind];
-    if (o.refused) ++messages[sort_of(o.message)];
-    if (o.mass > worst.mass) worst.mass = o.mass, worst.mass_case = number;
-    if (o.balance > worst.balance) worst.balance = o.balance, worst.balance_case = number;
-  }
-
-  void print() const {
-    std::printf("%-18s %7s %8s %7s\n", "kind", "flows", "refused", "failed");
-    for (std::size_t k = 0; k < flows.size(); ++k)
-      std::printf("%-18s %7d %8d %7d\n", adversarial::kinds[k].name, flows[k], refusals[k],
-                  failures[k]);
-    for (const auto& [message, count] : messages)
-      std::printf("%6d  %s...\n", count, message.c_str());
-    const auto line = [](const char* what, double value, std::uint64_t number) {
-      std::printf("largest %s %.2g (case %llu)\n", what, value,
-                  static_cast<unsigned long long>(number));
-    };
-    line("mass error", worst.mass, worst.mass_case);
-    line("force balance error", worst.balance, worst.balance_case);
-  }
-};
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::map<std::string, std::uint64_t> given{{"--count", 400}, {"--seed", 1}, {"--first", 0}};
-  for (int i = 1; i < argc; i += 2) {
-    char* end = nullptr;
-    if (given.count(argv[i]) == 0 || i + 1 == argc ||
-        (given[argv[i]] = std::strtoull(argv[i + 1], &end, 10), *end != '\0')) {
-      std::fprintf(stderr, "usage: fuzz [--count N] [--seed S] [--first K]\n");
-      return 2;
-    }
-  }
-  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGALRM, SIGBUS})
-    std::signal(signal, say_which);
-  Tally tally;
-  for (std::uint64_t i = 0; i < given["--count"]; ++i) {
-    running = given["--first"] + i;
-    alarm(hang);
-    const Case c = case_number(given["--seed"], running);
-    const Outcome outcome = examine(c);
-    tally.add(running, c, outcome);
-    if (given["--count"] == 1)
-      std::printf("%s\n%s\n", description(c).c_str(), outcome.message.c_str());
-  }
-  tally.print();
-  return tally.failed == 0 ? 0 : 1;
+  std::vector<std::string> kinds;
+  for (const auto& kind : adversarial::kinds) kinds.emplace_back(kind.name);
+  return fuzzing::run(argc, argv, kinds, case_number, examine, description);
 }

@@ -40,9 +40,9 @@ class CommandCase(unittest.TestCase):
         self.folder = pathlib.Path(temporary.name)
 
     def solve(self, packing, *words, box=UNIT):
-        """Runs `pfv solve`: its report, and its forces as {id: nine numbers}."""
-        bounds = [str(bound) for interval in box for bound in interval]
-        subprocess.run([os.environ["PFV_COMMAND"], "solve", "--packing", str(packing), "--box", *bounds, *words,
+        """Runs `pfv solve`: its report, and its forces as {id: nine numbers}. No box: a --container is among the words."""
+        bounds = ["--box", *(str(bound) for interval in box for bound in interval)] if box else []
+        subprocess.run([os.environ["PFV_COMMAND"], "solve", "--packing", str(packing), *bounds, *words,
                         "--viscosity", str(VISCOSITY), "--report", "report.json", "--forces", "forces.csv"],
                        cwd=self.folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         forces = np.loadtxt(self.folder / "forces.csv", delimiter=",", skiprows=1)

@@ -12,7 +12,8 @@ STUB = ast.parse((pathlib.Path(pfv.__file__).parent / "__init__.pyi").read_text(
 CLASSES = {node.name: node for node in STUB.body if isinstance(node, ast.ClassDef)}
 FUNCTIONS = {node.name: node for node in STUB.body if isinstance(node, ast.FunctionDef)}
 TYPED_DICTS = {name for name, node in CLASSES.items() if [ast.unparse(base) for base in node.bases] == ["TypedDict"]}
-CONDITIONS = ["pressure", "flux", "sealed", "wall", "velocity", "sliding", "spin", "pivot"]
+CONDITIONS = ["pressure", "flux", "sealed", "wall", "velocity", "sliding", "spin", "pivot", "angular_velocity",
+              "may_bound_nothing"]
 
 
 def members(node):
@@ -39,7 +40,7 @@ class Stubs(unittest.TestCase):
         self.assertTrue((pathlib.Path(pfv.__file__).parent / "py.typed").exists())
 
     def test_they_name_the_members_of_each_class(self):
-        for name in ("Box", "Fluid", "Packing", "Network", "Flow"):
+        for name in ("Box", "Container", "Fluid", "Packing", "Network", "Flow"):
             real = {member for member in vars(getattr(pfv, name)) if not member.startswith("_")}
             stub = {member for member in members(CLASSES[name]) if not member.startswith("_")}
             self.assertEqual(real, stub, name)
@@ -49,7 +50,7 @@ class Stubs(unittest.TestCase):
                 self.assertEqual(is_property, decorated, member)
 
     def test_they_name_the_arguments(self):
-        functions = [(vars(getattr(pfv, name))[member], node) for name in ("Box", "Flow")
+        functions = [(vars(getattr(pfv, name))[member], node) for name in ("Box", "Container", "Flow")
                      for member, node in members(CLASSES[name]).items()
                      if not member.startswith("__") and not node.decorator_list]
         functions += [(getattr(pfv, name), node) for name, node in FUNCTIONS.items()]

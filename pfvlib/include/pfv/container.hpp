@@ -5,7 +5,9 @@
 #include "pfv/options.hpp"
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,12 +51,18 @@ struct ContainerFace {
   /// The way along which a piston on this face is guided; its force and velocity are positive along it. A
   /// unit vector; zero: none.
   Eigen::Vector3d guide = Eigen::Vector3d::Zero();
+  /// Whether others may keep the fluid from it, as from the part of a drum that is above a free surface. If not, a face
+  /// that bounds nothing is refused: mostly its normal points the wrong way.
+  bool may_bound_nothing = false;
 };
 
-/// A rectangle on a face that is normal to an axis, as `Patch`; the face by its number.
+/// The part of a face, by its number, within a block of space, with a boundary of its own: it takes the pores of the face
+/// that have the nearest point of it there, or if none does the one that is nearest to the block's middle. Where
+/// patches overlap, the later one wins. A block may reach beyond its face; infinite bounds are none.
 struct ContainerPatch {
   int face = 0;
-  std::array<double, 4> rectangle{};
+  Eigen::Vector3d lower = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());  ///< m
+  Eigen::Vector3d upper = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());   ///< m
   Boundary boundary;
 };
 
@@ -67,7 +75,9 @@ struct Container {
   std::vector<ContainerFace> faces;
   std::vector<ContainerPatch> patches;
   std::vector<Region> regions;
-  std::array<bool, 3> periodic{false, false, false};  ///< boxes alone
+  /// Axes along which the packing repeats. Along each stand two planes normal to it, the ends of a period, which are
+  /// no walls; all other faces are parallel to it. A cylinder may be periodic along its own axis.
+  std::array<bool, 3> periodic{false, false, false};
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();     ///< of a periodic cell: xy, xz, yz, m
   Eigen::Vector3d pressure_gradient = Eigen::Vector3d::Zero();
   /// The smallest box around it, m; a flow finds it anew for the faces as they are.
@@ -86,14 +96,17 @@ struct Container {
 /// Most faces that a container may have.
 inline constexpr int most_faces = 64;
 
-/// Of these faces, with `lower` and `upper` filled in. Throws InputError as `check` does. A face whose normal points the
-/// wrong way may bound nothing without a word: `refuse_idle_faces` tells (`pfv/idle_faces.hpp`).
+/// Of these faces, with `lower` and `upper` filled in. Throws InputError as `check` does. Cost: faces².
 Container container_of(std::vector<ContainerFace> faces);
 /// Fills in `lower` and `upper`; a box keeps its own. Cost: faces².
 void find_bounds(Container& container);
 /// Copies them from a container whose faces have the same positions and shapes, at no such cost. Returns false and
 /// changes nothing where these differ, or for a box.
 bool take_bounds(Container& container, const Container& known);
+
+/// On a face: within the block x0, x1, y0, y1, z0, z1, or, as `Patch`, a rectangle a0, a1, b0, b1 along the two other axes on
+/// a plane that is normal to one (m). Throws InputError for other numbers of them, and a rectangle on another face.
+ContainerPatch patch_on(const Container& container, int face, const std::vector<double>& bounds, const Boundary& boundary);
 
 /// Volume (m³), area of each face (m²). Throws InputError for a container that is not closed.
 double volume_of(const Container& container);
@@ -102,8 +115,9 @@ std::vector<double> face_areas(const Container& container);
 /// The box that a container is, if it is one.
 std::optional<Box> box_of(const Container& container);
 
-/// Throws InputError when the container is open, empty or not convex, a face's name is missing or occurs twice,
-/// its shape or motion is not finite, a cylinder's ends are not square to it, or as `check(Box)` does.
+/// Throws InputError when the container is open, empty or not convex, a face bounds nothing that may not, its name is
+/// missing or occurs twice, its shape or motion is not finite, a cylinder's ends are not square to it, a periodic axis has
+/// not two ends at rest or other faces that are not parallel to it, or as `check(Box)` does.
 void check(const Container& container);
 /// Throws InputError for options that need a box, or plane walls.
 void check(const Container& container, const Options& options);

@@ -22,6 +22,8 @@ PackingArrays read_packing(const std::string& path);
 /// cylinder. The inward normal need not be a unit vector; the offset scales with it. A cylinder with "flats": N is N planes
 /// around of its section, named shell_1 ... shell_N where it is named shell. Throws InputError naming file and entry.
 Container read_container(const std::string& path);
+/// The same from text; `where` stands for the file in errors.
+Container container_of_json(const std::string& text, const std::string& where);
 
 // Every writer writes beside the target and renames at the end: a file is whole or absent.
 // Each throws FileError.

@@ -10,7 +10,6 @@
 #include "pfv/flow_model.hpp"
 #include "pfv/fluid.hpp"
 #include "pfv/grain_stresses.hpp"
-#include "pfv/idle_faces.hpp"
 #include "pfv/io.hpp"
 #include "pfv/mesh_walls.hpp"
 #include "pfv/names.hpp"

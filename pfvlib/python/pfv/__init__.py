@@ -13,9 +13,9 @@ SI units throughout; arrays have a row for each sphere, pore or throat. An array
 read where it stands; others are copied. `pfv.settings()` lists the keywords of Flow.
 """
 from ._errors import AccuracyWarning, Error, FileError, InputError, PackingWarning, SolverError
-from ._pfv import (Box, Flow, Fluid, Network, Packing, RigidBody, __version__, citation, contact_stresses, dense_packing,
-                   inertial_stresses, permeability, read_packing, settings, write_packing)
+from ._pfv import (Box, Container, Flow, Fluid, Network, Packing, RigidBody, __version__, citation, contact_stresses,
+                   dense_packing, inertial_stresses, permeability, read_packing, settings, write_packing)
 
-__all__ = ["AccuracyWarning", "Box", "Error", "FileError", "Flow", "Fluid", "InputError", "Network",
-           "Packing", "PackingWarning", "RigidBody", "SolverError", "citation", "contact_stresses", "dense_packing",
+__all__ = ["AccuracyWarning", "Box", "Container", "Error", "FileError", "Flow", "Fluid", "InputError",
+           "Network", "Packing", "PackingWarning", "RigidBody", "SolverError", "citation", "contact_stresses", "dense_packing",
            "inertial_stresses", "permeability", "read_packing", "settings", "write_packing"]

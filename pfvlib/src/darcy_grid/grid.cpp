@@ -20,8 +20,8 @@ struct Rectangle {
 Rectangle rectangle_of(const ContainerPatch& patch, const Container& box) {
   const int axis = axis_of(static_cast<Face>(patch.face));
   const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
-  const auto& r = patch.rectangle;
-  return {a, b, r[0] - box.lower[a], r[1] - box.lower[a], r[2] - box.lower[b], r[3] - box.lower[b]};
+  const Eigen::Vector3d lower = patch.lower - box.lower, upper = patch.upper - box.lower;
+  return {a, b, lower[a], upper[a], lower[b], upper[b]};
 }
 
 void apply(const ContainerPatch& patch, int number, const Grid& grid, const Container& box,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/pi.hpp"
 #include "pfv/error.hpp"
-#include "pfv/idle_faces.hpp"
 #include "pfv/io.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -124,20 +124,22 @@ void add_faces(std::vector<ContainerFace>& faces, const std::string& path, const
 Container read_container(const std::string& path) {
   std::ifstream file(path);
   if (!file) fail(path, "cannot be read: give the name of a file that holds a container");
+  return container_of_json({std::istreambuf_iterator<char>(file), {}}, path);
+}
+
+Container container_of_json(const std::string& text, const std::string& where) {
   InputJson json;
   try {
-    json = InputJson::parse(file);
+    json = InputJson::parse(text);
   } catch (const InputJson::exception& error) {
-    fail(path, std::string("it is no JSON: ") + error.what());
+    fail(where, std::string("it is no JSON: ") + error.what());
   }
-  refuse_unknown(path, json, {"planes", "cylinders"});
+  refuse_unknown(where, json, {"planes", "cylinders"});
   std::vector<ContainerFace> faces;
-  add_faces(faces, path, json, "planes", read_plane);
-  add_faces(faces, path, json, "cylinders", read_cylinder);
-  if (faces.empty()) fail(path, "it has neither planes nor cylinders");
-  Container container = container_of(std::move(faces));
-  refuse_idle_faces(container);
-  return container;
+  add_faces(faces, where, json, "planes", read_plane);
+  add_faces(faces, where, json, "cylinders", read_cylinder);
+  if (faces.empty()) fail(where, "it has neither planes nor cylinders");
+  return container_of(std::move(faces));
 }
 
 }  // namespace pfv

@@ -1,84 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The walls of a container as ParaView draws them.
-#include "geometry/pi.hpp"
 #include "io/atomic_file.hpp"
 #include "pfv/fields.hpp"
 #include "pfv/io.hpp"
-#include "problem/container_geometry.hpp"
+#include "problem/wall_polygons.hpp"
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <filesystem>
 
 namespace pfv {
 
 namespace {
-
-using PolygonCorners = std::vector<Eigen::Vector3d>;
-
-/// A polygon of a face, counterclockwise as seen from outside.
-struct WallPolygon {
-  int face;
-  PolygonCorners corners;
-};
-
-constexpr int strips_around = 96;  // of a cylinder: its section's polygon has 0.07 % less area
-
-/// A tilted periodic cell is the box sheared along its periodic axes.
-std::vector<WallPolygon> polygons_of_box(const Container& container) {
-  const Eigen::Vector3d edges = container.upper - container.lower;
-  Eigen::Matrix3d sides = edges.asDiagonal();
-  sides(0, 1) = container.tilt[0];
-  sides(0, 2) = container.tilt[1];
-  sides(1, 2) = container.tilt[2];
-  std::vector<WallPolygon> polygons;
-  for (int f = 0; f < container.face_count(); ++f) {
-    const int axis = f / 2;
-    if (container.periodic[axis]) continue;
-    WallPolygon polygon{f, {}};
-    for (const auto& [along, across] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
-      Eigen::Vector3d place;
-      place[axis] = f % 2;
-      place[(axis + 1) % 3] = f % 2 == 1 ? along : across;
-      place[(axis + 2) % 3] = f % 2 == 1 ? across : along;
-      polygon.corners.push_back(container.lower + sides * place);
-    }
-    polygons.push_back(std::move(polygon));
-  }
-  return polygons;
-}
-
-std::vector<WallPolygon> polygons_of_cylinder(const Container& container) {
-  const int round = *cylinder_of(container);
-  const auto ends = ends_of_cylinder(container);
-  const Surface& shell = container.faces[round].surface;
-  const Eigen::Vector3d first = shell.axis.unitOrthogonal(), second = shell.axis.cross(first);
-  std::array<PolygonCorners, 2> rings;
-  for (int end = 0; end < 2; ++end) {
-    const Surface& plane = container.faces[ends[end]].surface;
-    const Eigen::Vector3d centre = shell.point + plane.distance(shell.point) * plane.normal;
-    for (int i = 0; i < strips_around; ++i) {
-      const double angle = 2.0 * pi * i / strips_around;
-      rings[end].push_back(centre + shell.radius * (std::cos(angle) * first + std::sin(angle) * second));
-    }
-  }
-  std::vector<WallPolygon> polygons{{ends[0], PolygonCorners(rings[0].rbegin(), rings[0].rend())}, {ends[1], rings[1]}};
-  for (int i = 0; i < strips_around; ++i) {
-    const int next = (i + 1) % strips_around;
-    polygons.push_back({round, {rings[0][i], rings[0][next], rings[1][next], rings[1][i]}});
-  }
-  return polygons;
-}
-
-std::vector<WallPolygon> polygons_of(const Container& container) {
-  if (container.is_box) return polygons_of_box(container);
-  if (cylinder_of(container)) return polygons_of_cylinder(container);
-  std::vector<WallPolygon> polygons;
-  const std::vector<PolygonCorners> found = geometry_of(container, Eigen::Vector3d::Zero()).polygons;
-  for (int f = 0; f < container.face_count(); ++f)
-    if (found[f].size() > 2) polygons.push_back({f, found[f]});
-  return polygons;
-}
 
 const char* kind_of(const Boundary& boundary) {
   for (const BoundaryKind& one : boundary_kinds)
@@ -86,7 +18,7 @@ const char* kind_of(const Boundary& boundary) {
   return "";
 }
 
-Eigen::Vector3d velocity_at(const ContainerFace& face, const PolygonCorners& corners) {
+Eigen::Vector3d velocity_at(const ContainerFace& face, const Polygon3& corners) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& corner : corners) middle += corner / static_cast<double>(corners.size());
   return face.velocity + face.angular_velocity.cross(middle - face.pivot);
@@ -113,9 +45,9 @@ void add_results_of(FieldGrid& grid, const std::vector<WallPolygon>& polygons, c
 }  // namespace
 
 FieldGrid grid_of_walls(const Container& container, const std::vector<FaceResult>& results) {
-  const std::vector<WallPolygon> polygons = polygons_of(container);
+  const std::vector<WallPolygon> polygons = wall_polygons(container);
   FieldGrid grid;
-  PolygonCorners points;
+  Polygon3 points;
   TextField names{"name", {}}, walls{"wall", {}}, boundaries{"boundary", {}};
   for (const auto& [f, corners] : polygons) {
     std::vector<std::int64_t> cell;

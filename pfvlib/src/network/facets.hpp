@@ -3,6 +3,7 @@
 
 #include "network/round_walls.hpp"
 #include "network/spheres.hpp"
+#include "problem/wall_polygons.hpp"
 
 #include <array>
 #include <utility>
@@ -33,6 +34,10 @@ inline std::array<Vertex, 3> reversed(std::array<Vertex, 3> facet) {
 struct WallPair {
   Eigen::Vector3d first, second, along;  ///< normals, and their cross product
   double u, v, c, sine2;
+  /// From the foot on the first wall to the edge, along that wall, times the sine, m; negative where the foot lies
+  /// beyond the edge: v - u c. And the same on the second.
+  double leg, second_leg;
+  bool narrow;  ///< nearly parallel, where that difference has lost its digits
 
   WallPair(int k, Vertex one, Vertex other, const Spheres& spheres)
       : first(spheres.outward(k, one)),
@@ -41,12 +46,29 @@ struct WallPair {
         u(spheres.distance(k, wall_number(one))),
         v(spheres.distance(k, wall_number(other))),
         c(first.dot(second)),
-        sine2(along.squaredNorm()) {}
-  /// From the foot on the first wall to the edge, along that wall, times the sine, m; negative where the foot lies
-  /// beyond the edge.
-  double leg() const { return v - u * c; }
+        sine2(along.squaredNorm()),
+        leg(v - u * c),
+        second_leg(u - v * c),
+        narrow(sine2 < 0.01) {
+    if (narrow) find_legs(spheres.centres.col(k), spheres.wall(one).surface.offset, spheres.wall(other).surface.offset);
+  }
   /// From the sphere to the point of the edge that its plane across the edge meets.
-  Eigen::Vector3d to_edge() const { return u * first + leg() / sine2 * (second - c * first); }
+  Eigen::Vector3d to_edge() const {
+    return u * first + leg / sine2 * (narrow ? Eigen::Vector3d(along.cross(first)) : Eigen::Vector3d(second - c * first));
+  }
+
+ private:
+  /// From one edge for all spheres, so that what they see of it adds up: first and second differ, but for their sign, by
+  /// `apart`, which is exact, and 1 - |c| is half its square.
+  void find_legs(const Eigen::Vector3d& centre, double offset, double second_offset) {
+    const double same = c > 0.0 ? 1.0 : -1.0;
+    const Eigen::Vector3d apart = same * second - first;
+    along = 0.5 * same * (first + same * second).cross(apart);
+    sine2 = along.squaredNorm();
+    const double less = 0.5 * apart.squaredNorm();  // 1 - |c|
+    leg = (second_offset - same * offset) + same * less * offset - along.cross(first).dot(centre);
+    second_leg = (offset - same * second_offset) + same * less * second_offset - second.cross(along).dot(centre);
+  }
 };
 
 /// Area vector (m²) of the facet's polygon: a triangle of centres; with one wall the trapezoid
@@ -57,7 +79,8 @@ inline Eigen::Vector3d area_vector(const std::array<Vertex, 3>& facet, const Sph
   const int a = facet[0];
   if (is_wall(facet[1])) {
     const WallPair walls(a, facet[1], facet[2], spheres);
-    const double twice = 2.0 * walls.v * walls.u - walls.c * (walls.u * walls.u + walls.v * walls.v);
+    const double twice = walls.narrow ? walls.u * walls.leg + walls.v * walls.second_leg
+                                      : 2.0 * walls.v * walls.u - walls.c * (walls.u * walls.u + walls.v * walls.v);
     return twice / (2.0 * walls.sine2) * walls.along;
   }
   if (is_swept(facet, spheres)) return swept_area(facet, spheres);
@@ -88,11 +111,7 @@ inline Eigen::Vector3d put_on(const WallSurface& wall, Eigen::Vector3d place) {
 
 /// The point where three plane walls meet.
 inline Eigen::Vector3d corner_of_walls(Vertex first, Vertex second, Vertex third, const Spheres& spheres) {
-  const Surface &a = spheres.wall(first).surface, &b = spheres.wall(second).surface,
-                &c = spheres.wall(third).surface;
-  return (a.offset * b.normal.cross(c.normal) + b.offset * c.normal.cross(a.normal) +
-          c.offset * a.normal.cross(b.normal)) /
-         a.normal.dot(b.normal.cross(c.normal));
+  return corner_of_planes(spheres.wall(first).surface, spheres.wall(second).surface, spheres.wall(third).surface);
 }
 
 /// Corners of the facet's polygon, counterclockwise about its normal; of a swept facet those of the surface.

@@ -2,6 +2,7 @@
 #include "network/grains.hpp"
 
 #include "geometry/pi.hpp"
+#include "problem/container_geometry.hpp"
 #include "text/number_text.hpp"
 #include "pfv/error.hpp"
 
@@ -102,8 +103,9 @@ bool is_inside(const Packing& packing, Eigen::Index column, const Container& con
     if (!container.periodic[axis] && !(x > container.lower[axis] && x < container.upper[axis])) return false;
   }
   if (container.is_box) return true;
-  for (const ContainerFace& face : container.faces)
-    if (!(face.surface.distance(packing.positions.col(column)) > 0.0)) return false;
+  for (int f = 0; f < container.face_count(); ++f)
+    if (periodic_axis(container, f) < 0 && !(container.faces[f].surface.distance(packing.positions.col(column)) > 0.0))
+      return false;
   return true;
 }
 
@@ -135,9 +137,9 @@ InputError outside_of(const Container& container, const Packing& packing, Eigen:
     return InputError(text + " is not inside the box from " + place(container.lower) + " to " +
                           place(container.upper) + "; enlarge the box or remove the sphere",
                       culprit);
-  for (const ContainerFace& face : container.faces)
-    if (!(face.surface.distance(packing.positions.col(k)) > 0.0))
-      return InputError(text + " is not inside the container: it stands beyond its face " + face.name +
+  for (int f = 0; f < container.face_count(); ++f)
+    if (periodic_axis(container, f) < 0 && !(container.faces[f].surface.distance(packing.positions.col(k)) > 0.0))
+      return InputError(text + " is not inside the container: it stands beyond its face " + container.faces[f].name +
                             "; move that face or remove the sphere",
                         culprit);
   return InputError(text + " is not inside the container; remove the sphere", culprit);

@@ -9,24 +9,27 @@ namespace pfv {
 
 namespace {
 
-/// The patch's rectangle and the pore's place in the plane of its face.
-struct InFace {
-  Eigen::Vector2d lower, upper, place;
-};
-
-InFace in_face(const ContainerPatch& patch, int axis, const PoreNetwork& network, int pore) {
-  const int first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
-  const Eigen::Vector3d place = network.origin + network.pore_centres.col(pore);
-  return {{patch.rectangle[0], patch.rectangle[2]},
-          {patch.rectangle[1], patch.rectangle[3]},
-          {place[first], place[second]}};
+/// The point of a face that is nearest to a pore.
+Eigen::Vector3d place_on(const Surface& surface, const Eigen::Vector3d& pore) {
+  return pore + surface.distance(pore) * surface.outward_at(pore);
 }
 
 /// Borders included, rounding or not: a lattice may have its pores on them.
-bool within(const InFace& p) {
-  const Eigen::Array2d slack = 1e-9 * (p.upper - p.lower).array();
-  return (p.place.array() >= p.lower.array() - slack).all() &&
-         (p.place.array() <= p.upper.array() + slack).all();
+bool within(const ContainerPatch& patch, const Eigen::Vector3d& place) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double width = patch.upper[axis] - patch.lower[axis], slack = std::isfinite(width) ? 1e-9 * width : 0.0;
+    if (!(place[axis] >= patch.lower[axis] - slack && place[axis] <= patch.upper[axis] + slack)) return false;
+  }
+  return true;
+}
+
+/// From the middle of the block, along the axes that it bounds on both sides.
+double distance_from_middle(const ContainerPatch& patch, const Eigen::Vector3d& place) {
+  Eigen::Vector3d away = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::isfinite(patch.upper[axis] - patch.lower[axis]))
+      away[axis] = place[axis] - 0.5 * (patch.lower[axis] + patch.upper[axis]);
+  return away.norm();
 }
 
 /// Which pores take a boundary that has none inside: `nearest` (-1: none here), or of several ranks that of the lowest
@@ -48,19 +51,18 @@ std::vector<int> takers(const Share& share, int pores, bool any_inside, int near
 void give_to_patch(std::vector<PoreBoundaries::Contact>& contacts, const PoreNetwork& network,
                    const Container& container, int number, const Share& share) {
   const ContainerPatch& patch = container.patches[number];
-  int axis = 0;
-  container.faces[patch.face].surface.normal.cwiseAbs().maxCoeff(&axis);
+  const Surface& surface = container.faces[patch.face].surface;
   int nearest = -1;
   double nearest_distance = std::numeric_limits<double>::infinity();
   bool any = false;
   for (PoreBoundaries::Contact& contact : contacts) {
     if (contact.face != patch.face || !share.has_whole(contact.pore)) continue;
-    const InFace place = in_face(patch, axis, network, contact.pore);
-    if (within(place)) {
+    const Eigen::Vector3d place = place_on(surface, network.origin + network.pore_centres.col(contact.pore));
+    if (within(patch, place)) {
       contact.boundary = patch_number(container, number);
       any = true;
     }
-    const double distance = (place.place - 0.5 * (place.lower + place.upper)).norm();
+    const double distance = distance_from_middle(patch, place);
     if (share.owns_pore(contact.pore) && distance < nearest_distance) {
       nearest_distance = distance;
       nearest = contact.pore;

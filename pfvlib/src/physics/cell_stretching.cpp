@@ -43,14 +43,15 @@ Eigen::Matrix3Xd opened_by_images(const PoreNetwork& network, const Spheres& gra
   return opened;
 }
 
-/// The axis that face f bounds, where that is periodic, or -1.
-int periodic_axis(const Spheres& grains, int f) { return f < 6 && grains.periodic[f / 2] ? f / 2 : -1; }
+/// The axis that face f of a box bounds, where that is periodic, or -1.
+int axis_of_end(const Spheres& grains, int f) { return grains.periodic[f / 2] ? f / 2 : -1; }
 
 double sign_of(int face) { return face % 2 == 1 ? 1.0 : -1.0; }
 
 }  // namespace
 
 bool stretches(const Container& container) {
+  if (!container.is_box) return false;
   for (int axis = 0; axis < 3; ++axis)
     if (container.periodic[axis] &&
         container.faces[2 * axis].velocity[axis] != container.faces[2 * axis + 1].velocity[axis])
@@ -70,7 +71,7 @@ void add_stretching(ForceMatrix& matrix, const PoreNetwork& network, const Spher
   whole.pore.assign(matrix.pore.begin(), matrix.pore.begin() + sphere_entries);
   std::vector<Vector6d> of_faces;
   for (int f = 0; f < grains.wall_count(); ++f) {
-    const int axis = periodic_axis(grains, f), row = matrix.spheres + f;
+    const int axis = axis_of_end(grains, f), row = matrix.spheres + f;
     for (int e = matrix.row_begin[row]; axis < 0 && e < matrix.row_begin[row + 1]; ++e) {
       whole.pore.push_back(matrix.pore[e]);
       of_faces.push_back(matrix.value.col(e));
@@ -108,7 +109,7 @@ void add_stretching(VolumeRateMatrix& matrix, const PoreNetwork& network, const 
       areas.push_back(matrix.area.col(e));
     }
     for (int f = 0; f < 6; ++f) {
-      const int axis = periodic_axis(grains, f);
+      const int axis = axis_of_end(grains, f);
       if (axis < 0 || opened(axis, pore) == 0.0) continue;
       whole.mover.push_back(wall_vertex(f));
       areas.push_back(Eigen::Vector3d::Unit(axis) * (sign_of(f) * opened(axis, pore) / grains.edges[axis]));

@@ -35,9 +35,28 @@ CellVolume prism(const Vector& b, const Vector& c, const Vector& w, double heigh
   return result;
 }
 
+/// `slab` by the legs of its ends, 2 u v - c (u² + v²) = u leg + v second_leg.
+CellVolume narrow_slab(const Vector& b, const WallPair& at_a, const WallPair& at_b) {
+  CellVolume result;
+  const Vector &w1 = at_a.first, &w2 = at_a.second, &along = at_a.along;
+  const double length = b.dot(along) / at_a.sine2;
+  const auto mean = [](double a, double b, double x, double y) { return (2.0 * a * x + 2.0 * b * y + a * y + b * x) / 6.0; };
+  const double section = 0.5 / at_a.sine2 * (mean(at_a.u, at_b.u, at_a.leg, at_b.leg) +
+                                             mean(at_a.v, at_b.v, at_a.second_leg, at_b.second_leg));
+  result.volume = b.dot(along) * section;
+  const Vector of_a = length / 6.0 * ((2.0 * at_a.leg + at_b.leg) * w1 + (2.0 * at_a.second_leg + at_b.second_leg) * w2);
+  const Vector of_b = length / 6.0 * ((2.0 * at_b.leg + at_a.leg) * w1 + (2.0 * at_b.second_leg + at_a.second_leg) * w2);
+  result.gradient[0] = -section * along - of_a;
+  result.gradient[1] = section * along - of_b;
+  result.gradient[2] = 0.5 * length * (at_a.leg + at_b.leg) * w1;
+  result.gradient[3] = 0.5 * length * (at_a.second_leg + at_b.second_leg) * w2;
+  return result;
+}
+
 /// Edge (a, a+b) and its feet on two walls; `at_a` and `at_b`: the walls as its ends see them.
 CellVolume slab(const Vector& b, const WallPair& at_a, const WallPair& at_b) {
   CellVolume result;
+  if (at_a.narrow) return narrow_slab(b, at_a, at_b);
   const Vector &w1 = at_a.first, &w2 = at_a.second, &along = at_a.along;
   const double ua = at_a.u, va = at_a.v, ub = at_b.u, vb = at_b.v, c = at_a.c, sine2 = at_a.sine2;
   const double length = b.dot(along);

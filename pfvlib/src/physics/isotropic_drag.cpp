@@ -61,7 +61,7 @@ void for_each_view(const PoreNetwork& network, const Throats& throats, const Sph
 
 /// Of the domain of a throat. That of a pore beyond a wall, as beside one of many sides, is negative in both parts.
 double solid_fraction_of(const Throats& throats, int t) {
-  const double domain = throats.area[t] * throats.length[t] / 3.0;
+  const double domain = domain_of(throats, t);
   return domain != 0.0 ? std::clamp(1.0 - throats.volume[t] / domain, 0.0, 1.0) : 1.0;
 }
 

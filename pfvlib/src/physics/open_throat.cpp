@@ -79,7 +79,8 @@ Hidden hidden_at_side(const Spheres& spheres, int k, Vertex other) {
 Hidden hidden_in_facet(const PoreNetwork& network, const Spheres& spheres, int t, int f) {
   const auto& facet = network.facet_vertices[f];
   const auto& pores = network.throat_pores[t];
-  const Eigen::Vector3d normal = unit_normal(facet, spheres);
+  const Eigen::Vector3d normal = unit_normal(facet, spheres);  // of a swept facet its mean
+  const bool swept = is_swept(facet, spheres);
   Hidden sum;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
@@ -90,12 +91,13 @@ Hidden hidden_in_facet(const PoreNetwork& network, const Spheres& spheres, int t
     const Hidden around = hidden_at_side(spheres, k, other);
     if (around.area == 0.0) continue;
     const Eigen::Vector3d along = spheres.towards(k, other).normalized();
-    const Eigen::Vector3d inwards = (turned ? -1.0 : 1.0) * normal.cross(along);
+    const Eigen::Vector3d across = swept ? Eigen::Vector3d((normal - normal.dot(along) * along).normalized()) : normal;
+    const Eigen::Vector3d inwards = (turned ? -1.0 : 1.0) * across.cross(along);
     const Eigen::Vector3d first = network.pore_centres.col(pores[0]) - spheres.centres.col(k);
     const Eigen::Vector3d second = network.pore_centres.col(pores[1]) +
                                    network.throat_offset(t) - spheres.centres.col(k);
-    const double angle = std::atan2(-normal.dot(first), inwards.dot(first)) +
-                         std::atan2(normal.dot(second), inwards.dot(second));
+    const double angle = std::atan2(-across.dot(first), inwards.dot(first)) +
+                         std::atan2(across.dot(second), inwards.dot(second));
     const double share = (is_wall(other) ? hidden_wall_share : 1.0) * angle / (2.0 * pi);
     sum.area += share * around.area;
     sum.volume += share * around.volume;
@@ -170,7 +172,7 @@ OpenThroat open_throat(const PoreNetwork& network, const Throats& throats, const
     kozeny = kuwabara_kozeny(solid);
   } else {
     radius = throat.fluid / gamma;
-    solid = solid_fraction(throat.fluid, area * throats.length[t] / 3.0);
+    solid = solid_fraction(throat.fluid, domain_of(throats, t));
     const double root = (std::max(0.0, throat.spheres) * std::sqrt(kuwabara_kozeny(solid)) +
                          throat.walls * std::sqrt(plate_kozeny)) / gamma;
     kozeny = root * root;

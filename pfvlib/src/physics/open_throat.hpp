@@ -23,7 +23,7 @@ struct OpenThroat {
 ///   R = phi / (gamma_s + 2/3 gamma_w), of spheres and no-slip walls: a wall's area goes wholly to
 ///       the side throats of its pore, which hold two thirds of the fluid; phi and gamma_s are
 ///       without the lenses and caps that overlaps hide, and 0.8 of the caps beyond walls;
-///   e = phi / (S L / 3), the porosity of the domain;
+///   e = phi / (S L / 3), the porosity of the domain; at a round wall over the domain's own volume;
 ///   k = the Kozeny constant of Kuwabara's cell for e, and of plates (3) for no-slip walls, their
 ///       square roots averaged with gamma as weight (drags of few spheres and of a wall add up);
 ///   w = mean of q / (1 + q) over the sides of the facet, q = (h / 0.18)^0.8, h the gap over the

@@ -79,7 +79,7 @@ namespace {
 /// Of the two right triangles with the legs u and v that make it up.
 Eigen::Vector3d middle_of_kite(const Eigen::Vector3d& start, const WallPair& walls) {
   const Eigen::Vector3d edge = walls.to_edge();
-  const double first = walls.u * (walls.v - walls.u * walls.c), second = walls.v * (walls.u - walls.v * walls.c);
+  const double first = walls.u * walls.leg, second = walls.v * walls.second_leg;
   const double sum = first + second;
   if (!(std::abs(sum) > 0.0)) return start + edge / 2.0;
   return start + (first * (walls.u * walls.first + edge) + second * (walls.v * walls.second + edge)) / (3.0 * sum);

@@ -67,7 +67,7 @@ Halves halves_of(const FacetShape& shape, const std::array<Vertex, 3>& facet,
 /// Of a facet with two walls: the side on one of them, from the foot to the edge with the other, m.
 double leg_on(Vertex wall, Vertex other, int k, const Spheres& spheres) {
   const WallPair walls(k, wall, other, spheres);
-  return walls.leg() / std::sqrt(walls.sine2);
+  return walls.leg / std::sqrt(walls.sine2);
 }
 
 /// The strip of wall under one side of the facet, out to P on either side; only where fluid sticks.
@@ -129,7 +129,12 @@ Halves measure_halves(const PoreNetwork& network, const PoreBoundaries& boundari
   return halves;
 }
 
-void resize(Throats& throats, const PoreNetwork& network) {
+bool any_round_wall(const Spheres& spheres) {
+  return std::any_of(spheres.walls.begin(), spheres.walls.end(), [](const WallSurface& wall) { return !wall.is_plane(); });
+}
+
+void resize(Throats& throats, const PoreNetwork& network, const Spheres& spheres) {
+  throats.round_domain.assign(any_round_wall(spheres) ? network.throats() : 0, 0.0);
   throats.facet_disc.assign(network.facets(), {0.0, 0.0, 0.0});
   throats.facet_gamma.assign(network.facets(), {0.0, 0.0, 0.0});
   throats.normal.resize(3, network.throats());
@@ -205,6 +210,18 @@ void measure_throat(Throats& throats, const PoreNetwork& network,
   throats.length[t] = (pore_centre(network, t, 1) - pore_centre(network, t, 0)).norm();
 }
 
+/// `halves`: of the throat's facets. Without what a round wall bulges.
+double round_domain_of(const PoreNetwork& network, const Spheres& spheres, int t, const Halves* halves) {
+  bool round = false;
+  double domain = 0.0;
+  for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
+    const Halves& half = halves[f - network.throat_facets[t]];
+    domain += half.volume[0] + half.volume[1];
+    round = round || touches_round_wall(network.facet_vertices[f], spheres);
+  }
+  return round ? domain : 0.0;
+}
+
 /// Throats first ... last - 1; `halves`: of their facets.
 void measure_piece(Throats& throats, const PoreNetwork& network, const PoreBoundaries& boundaries,
                    const Spheres& spheres, int first, int last, Halves* halves) {
@@ -230,6 +247,7 @@ void measure_piece(Throats& throats, const PoreNetwork& network, const PoreBound
   for (int t = first; t < last; ++t) {
     const int begin = network.throat_facets[t] - first_facet;
     measure_throat(throats, network, boundaries, spheres, t, &shapes[begin], &halves[begin]);
+    if (!throats.round_domain.empty()) throats.round_domain[t] = round_domain_of(network, spheres, t, &halves[begin]);
   }
 }
 
@@ -262,6 +280,7 @@ void add_bulges(Throats& throats, const PoreNetwork& network, const Spheres& sph
   for_each_round_side(network, spheres, [&](int t, int pore, double area) {
     const double share = bulge[pore] * area / areas[pore];
     throats.volume[t] += share;
+    throats.round_domain[t] += share;
     throats.pore_volume[pore] += share;
     throats.pore_fluid_volume[pore] += share;
   });
@@ -280,7 +299,7 @@ double hydraulic_radius_of_pores(const Throats& throats, const std::array<int, 2
 Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
                         const Spheres& spheres, Team& team) {
   Throats throats;
-  resize(throats, network);
+  resize(throats, network, spheres);
   std::vector<Halves> halves;
   for (int first = 0; first < network.throats(); first += throats_per_round) {
     const int last = std::min(first + throats_per_round, network.throats());
@@ -295,11 +314,7 @@ Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& bounda
       for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
         add_to_pores(throats, network, halves[f - first_facet], t);
   }
-  for (const WallSurface& wall : spheres.walls)
-    if (!wall.is_plane()) {
-      add_bulges(throats, network, spheres);
-      break;
-    }
+  if (any_round_wall(spheres)) add_bulges(throats, network, spheres);
   return throats;
 }
 

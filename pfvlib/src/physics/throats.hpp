@@ -30,6 +30,9 @@ struct Throats {
   std::vector<double> length;        ///< L = |P_i P_j|, m
   std::vector<double> volume;        ///< phi, pore volume of the domain, m³
   std::vector<double> gamma;         ///< solid surface of the domain, no-slip walls included, m²
+  /// Of a throat at a round wall: its domain with the spheres in it, m³, which is no bipyramid of volume S L / 3; 0 for
+  /// other throats; empty without such a wall.
+  std::vector<double> round_domain;
   std::vector<double> conductance_factor;  ///< empty, or what the law's result is multiplied with
 
   // one entry a pore
@@ -40,6 +43,12 @@ struct Throats {
 
 /// Shape factor of g = alpha A^f R_h² / mu: Chareyre et al. 2012, after eq. 9.
 inline constexpr double alpha = 0.5;
+
+/// Volume of a throat's domain with the spheres in it, m³.
+inline double domain_of(const Throats& throats, int t) {
+  const bool round = !throats.round_domain.empty() && throats.round_domain[t] > 0.0;
+  return round ? throats.round_domain[t] : throats.area[t] * throats.length[t] / 3.0;
+}
 
 /// R_h of two whole pores, m; 0 where they have no solid surface.
 double hydraulic_radius_of_pores(const Throats& throats, const std::array<int, 2>& pores);

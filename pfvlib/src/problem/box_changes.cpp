@@ -18,7 +18,7 @@ bool same_kinds(const Container& a, const Container& b) {
       return false;
   for (std::size_t i = 0; i < a.patches.size(); ++i)
     if (a.patches[i].face != b.patches[i].face ||
-        a.patches[i].rectangle != b.patches[i].rectangle ||
+        a.patches[i].lower != b.patches[i].lower || a.patches[i].upper != b.patches[i].upper ||
         a.patches[i].boundary.kind != b.patches[i].boundary.kind)
       return false;
   for (int f = 0; f < a.face_count(); ++f)

@@ -2,12 +2,13 @@
 #include "pfv/container.hpp"
 
 #include "pfv/error.hpp"
-#include "pfv/idle_faces.hpp"
 #include "problem/box_changes.hpp"
 #include "problem/container_geometry.hpp"
+#include "problem/wall_polygons.hpp"
 #include "text/number_text.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -31,6 +32,27 @@ ContainerFace face_of(const Box& box, Face face) {
   result.pivot = from.pivot;
   result.guide = along;
   return result;
+}
+
+/// The two other axes, in the order x, y, z.
+std::array<int, 2> axes_beside(int axis) { return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2}; }
+
+ContainerPatch rectangle_on(int face, int axis, const std::array<double, 4>& rectangle, const Boundary& boundary) {
+  ContainerPatch patch;
+  patch.face = face;
+  patch.boundary = boundary;
+  const auto [a, b] = axes_beside(axis);
+  patch.lower[a] = rectangle[0];
+  patch.upper[a] = rectangle[1];
+  patch.lower[b] = rectangle[2];
+  patch.upper[b] = rectangle[3];
+  return patch;
+}
+
+Patch on_box(const ContainerPatch& patch) {
+  const auto face = static_cast<Face>(patch.face);
+  const auto [a, b] = axes_beside(axis_of(face));
+  return {face, {patch.lower[a], patch.upper[a], patch.lower[b], patch.upper[b]}, patch.boundary};
 }
 
 void require_finite(const ContainerFace& face, const std::string& where) {
@@ -67,8 +89,8 @@ void check_cylinder(const Container& container, int cylinder) {
     const ContainerFace& face = container.faces[f];
     if (!face.surface.is_plane())
       throw InputError("container: faces " + name + " and " + face.name +
-                       " are both cylinders; one is supported: take planes for the other, or spheres on "
-                       "its surface");
+                       " are both cylinders; one holds the fluid: what stands inside, as the inner cylinder of an annulus, is an "
+                       "obstacle of a mesh (--obstacle FILE.stl; fix: obstacle mesh ID)");
     const double along = face.surface.normal.dot(axis);
     if (!(face.surface.normal.cross(axis).norm() < square))
       throw InputError("container: plane " + face.name + " is not square to the axis of cylinder " + name +
@@ -94,6 +116,14 @@ void require_different_planes(const Container& container) {
     }
 }
 
+void refuse_idle_faces(const Container& container) {
+  const std::vector<double> areas = face_areas(container);
+  for (int f = 0; f < container.face_count(); ++f)
+    if (!(areas[f] > 0.0) && !container.faces[f].may_bound_nothing)
+      throw InputError("container: face " + container.faces[f].name +
+                       " bounds nothing, since others keep the fluid from it; remove it, or turn its normal");
+}
+
 /// Of all faces together, their motion aside.
 void check_shapes(const Container& container) {
   if (container.face_count() < 3 || container.face_count() > most_faces)
@@ -105,16 +135,77 @@ void check_shapes(const Container& container) {
   if (const std::optional<int> cylinder = cylinder_of(container)) check_cylinder(container, *cylinder);
 }
 
+void check_periodic_face(const Container& container, int f, int axis) {
+  const ContainerFace& face = container.faces[f];
+  const Surface& surface = face.surface;
+  const bool parallel = surface.is_plane() ? surface.normal[axis] == 0.0 : std::abs(surface.axis[axis]) == 1.0;
+  const std::string along = std::string(1, "xyz"[axis]);
+  if (periodic_axis(container, f) != axis && !parallel)
+    throw InputError("container: face " + face.name + " is neither normal nor parallel to " + along +
+                     ", which is periodic; give it walls in place of the period");
+  if (periodic_axis(container, f) == axis &&
+      (face.boundary.is_open() || !face.velocity.isZero(0.0) || !face.angular_velocity.isZero(0.0)))
+    throw InputError("container: face " + face.name + " is an end of the period along " + along +
+                     ": it can have neither a boundary nor a motion");
+}
+
+/// Two ends at rest along each periodic axis, and nothing that goes across.
+void check_periodic(const Container& container) {
+  if (!container.tilt.isZero(0.0)) throw InputError("container: a tilt needs a box");
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string along = std::string(1, "xyz"[axis]);
+    const double gradient = container.pressure_gradient[axis];
+    if (!std::isfinite(gradient) || (gradient != 0.0 && !container.periodic[axis]))
+      throw InputError("container: the pressure gradient along " + along +
+                       " is no finite number, or that axis is not periodic; give its faces pressures");
+    if (!container.periodic[axis]) continue;
+    int ends = 0;
+    for (int f = 0; f < container.face_count(); ++f) {
+      check_periodic_face(container, f, axis);
+      ends += periodic_axis(container, f) == axis;
+    }
+    if (ends != 2)
+      throw InputError("container: along " + along + ", which is periodic, it has " + std::to_string(ends) +
+                       " planes normal to that axis; give it two, a period apart");
+  }
+  for (const ContainerPatch& patch : container.patches)
+    if (patch.face >= 0 && patch.face < container.face_count() && periodic_axis(container, patch.face) >= 0)
+      throw InputError("container: a patch on face " + container.faces[patch.face].name +
+                       ", which is an end of a period and no wall; remove it");
+}
+
+/// Whether the block reaches the face, of which these are polygons.
+bool reaches(const ContainerPatch& patch, const std::vector<WallPolygon>& polygons, double slack) {
+  return std::any_of(polygons.begin(), polygons.end(), [&](const WallPolygon& polygon) {
+    if (polygon.face != patch.face) return false;
+    Polygon3 left = polygon.corners;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
+      if (std::isfinite(patch.upper[axis])) left = clip(left, Surface::plane(along, (patch.upper[axis] + slack) * along));
+      if (std::isfinite(patch.lower[axis])) left = clip(left, Surface::plane(-along, (patch.lower[axis] - slack) * along));
+    }
+    return !left.empty();
+  });
+}
+
 void check_patches(const Container& container) {
+  if (container.patches.empty()) return;
+  const std::vector<WallPolygon> polygons = wall_polygons(container);
+  // a cylinder's strips lie as much within it
+  const std::optional<int> round = cylinder_of(container);
+  const double slack = round ? 1e-3 * container.faces[*round].surface.radius
+                             : 1e-9 * (container.upper - container.lower).norm();
   for (std::size_t i = 0; i < container.patches.size(); ++i) {
-    const int f = container.patches[i].face;
+    const ContainerPatch& patch = container.patches[i];
     const std::string where = "patch " + std::to_string(i + 1);
-    if (f < 0 || f >= container.face_count())
-      throw InputError(where + ": there is no face " + std::to_string(f));
-    const Surface& surface = container.faces[f].surface;
-    if (!surface.is_plane() || !(surface.normal.cwiseAbs().maxCoeff() > 1.0 - square))
-      throw InputError(where + " on face " + container.faces[f].name +
-                       ": a rectangle needs a plane normal to an axis; take a region instead");
+    if (patch.face < 0 || patch.face >= container.face_count())
+      throw InputError(where + ": there is no face " + std::to_string(patch.face));
+    const std::string on_face = where + " on face " + container.faces[patch.face].name;
+    if (!(patch.lower.array() < patch.upper.array()).all())
+      throw InputError(on_face + ": its block is flat, inverted or no number; give each lower bound first");
+    if (!reaches(patch, polygons, slack))
+      throw InputError(on_face + ": its block does not reach the face; move it there");
+    check(patch.boundary, on_face);
   }
 }
 
@@ -168,7 +259,7 @@ Container::Container(const Box& box)
       is_box(true) {
   for (const Face face : all_faces) faces.push_back(face_of(box, face));
   for (const Patch& patch : box.patches)
-    patches.push_back({static_cast<int>(patch.face), patch.rectangle, patch.boundary});
+    patches.push_back(rectangle_on(static_cast<int>(patch.face), axis_of(patch.face), patch.rectangle, patch.boundary));
 }
 
 std::optional<int> Container::face_named(const std::string& name) const {
@@ -182,7 +273,23 @@ Container container_of(std::vector<ContainerFace> faces) {
   container.faces = std::move(faces);
   check_shapes(container);
   find_bounds(container);
+  refuse_idle_faces(container);
   return container;
+}
+
+ContainerPatch patch_on(const Container& container, int face, const std::vector<double>& bounds, const Boundary& boundary) {
+  const std::string where = "patch on face " + container.faces.at(face).name;
+  const Surface& surface = container.faces[face].surface;
+  if (bounds.size() == 4) {
+    Eigen::Index axis = 0;
+    if (!surface.is_plane() || !(surface.normal.cwiseAbs().maxCoeff(&axis) > 1.0 - square))
+      throw InputError(where + ": a rectangle needs a plane normal to an axis; give the block of space that cuts the part out of "
+                       "the face, x0, x1, y0, y1, z0, z1");
+    return rectangle_on(face, static_cast<int>(axis), {bounds[0], bounds[1], bounds[2], bounds[3]}, boundary);
+  }
+  if (bounds.size() != 6)
+    throw InputError(where + ": give the four numbers of a rectangle on it, or the six of a block of space");
+  return {face, {bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}, boundary};
 }
 
 std::optional<Box> box_of(const Container& container) {
@@ -199,7 +306,7 @@ std::optional<Box> box_of(const Container& container) {
     to.sliding[axis] = 0.0;
   }
   for (const ContainerPatch& patch : container.patches)
-    box.patches.push_back({static_cast<Face>(patch.face), patch.rectangle, patch.boundary});
+    box.patches.push_back(on_box(patch));
   box.regions = container.regions;
   box.periodic = container.periodic;
   box.tilt = container.tilt;
@@ -221,21 +328,13 @@ void check(const Container& container) {
   }
   check_conditions(container);
   require_different_planes(container);
-}
-
-void refuse_idle_faces(const Container& container, const std::vector<char>& may) {
-  const std::vector<double> areas = face_areas(container);
-  for (int f = 0; f < container.face_count(); ++f)
-    if (!(areas[f] > 0.0) && (may.empty() || !may[f]))
-      throw InputError("container: face " + container.faces[f].name +
-                       " bounds nothing, since others keep the fluid from it; remove it, or turn its normal");
+  refuse_idle_faces(container);
 }
 
 void check_conditions(const Container& container) {
   check_shapes(container);
   for (const ContainerFace& face : container.faces) check(face.boundary, "face " + face.name);
-  if (container.any_periodic() || !container.pressure_gradient.isZero(0.0))
-    throw InputError("container: periodic axes and a pressure gradient need a box");
+  check_periodic(container);
   check_patches(container);
   check(box_around(container));
 }

@@ -3,10 +3,12 @@
 
 #include "geometry/pi.hpp"
 #include "pfv/error.hpp"
+#include "problem/wall_polygons.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pfv {
@@ -14,7 +16,6 @@ namespace pfv {
 namespace {
 
 using Vector = Eigen::Vector3d;
-using Polygon3 = std::vector<Vector>;
 
 /// A square on a plane, counterclockwise about its normal.
 Polygon3 square_on(const Surface& plane, const Vector& middle, double half) {
@@ -23,26 +24,53 @@ Polygon3 square_on(const Surface& plane, const Vector& middle, double half) {
   return {foot + u + v, foot - u + v, foot - u - v, foot + u - v};
 }
 
-/// The part of a polygon on the fluid's side of a plane.
-Polygon3 clip(const Polygon3& polygon, const Surface& plane) {
-  Polygon3 result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+/// A polygon on a plane, with the plane that each side lies on, or -1: side i goes on from corner i.
+struct CutPolygon {
+  Polygon3 corners;
+  std::vector<int> sides;
+};
+
+/// The part on the fluid's side of plane `number`.
+CutPolygon cut(const CutPolygon& polygon, const Surface& plane, int number) {
+  CutPolygon result;
+  const auto add = [&](const Vector& corner, int side) {
+    result.corners.push_back(corner);
+    result.sides.push_back(side);
+  };
+  for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
+    const Vector &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.corners.size()];
     const double da = plane.distance(a), db = plane.distance(b);
-    if (da >= 0.0) result.push_back(a);
-    if ((da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0)) result.push_back(a + da / (da - db) * (b - a));
+    if (da >= 0.0) add(a, da == 0.0 && db < 0.0 ? number : polygon.sides[i]);
+    if (da > 0.0 && db < 0.0) add(a + da / (da - db) * (b - a), number);
+    if (da < 0.0 && db > 0.0) add(a + da / (da - db) * (b - a), polygon.sides[i]);
   }
   return result;
+}
+
+/// Where three planes meet, the same for the faces of all three: only so do the areas of faces that are nearly parallel
+/// add up to nothing.
+void share_corners(CutPolygon& polygon, int face, const std::vector<Surface>& planes, double width) {
+  constexpr double rounding = 1e-6;
+  const std::size_t count = polygon.corners.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<int, 3> meeting{face, polygon.sides[i], polygon.sides[(i + count - 1) % count]};
+    std::sort(meeting.begin(), meeting.end());
+    if (meeting[0] < 0 || meeting[0] == meeting[1] || meeting[1] == meeting[2]) continue;
+    const Vector corner = corner_of_planes(planes[meeting[0]], planes[meeting[1]], planes[meeting[2]]);
+    if ((corner - polygon.corners[i]).norm() < rounding * width) polygon.corners[i] = corner;
+  }
 }
 
 /// The polygons that a square of the given half width leaves on each plane.
 std::vector<Polygon3> clipped(const std::vector<Surface>& planes, const Vector& middle, double half) {
   std::vector<Polygon3> polygons;
-  for (std::size_t f = 0; f < planes.size(); ++f) {
-    Polygon3 polygon = square_on(planes[f], middle, half);
-    for (std::size_t other = 0; other < planes.size() && !polygon.empty(); ++other)
-      if (other != f) polygon = clip(polygon, planes[other]);
-    polygons.push_back(std::move(polygon));
+  const int count = static_cast<int>(planes.size());
+  for (int f = 0; f < count; ++f) {
+    CutPolygon polygon{square_on(planes[f], middle, half), {-1, -1, -1, -1}};
+    for (int other = 0; other < count && !polygon.corners.empty(); ++other)
+      if (other != f) polygon = cut(polygon, planes[other], other);
+    share_corners(polygon, f, planes, half);
+    polygons.push_back(std::move(polygon.corners));
   }
   return polygons;
 }
@@ -201,6 +229,13 @@ std::array<int, 2> ends_of_cylinder(const Container& container) {
   return ends;
 }
 
+int periodic_axis(const Container& container, int face) {
+  const Surface& surface = container.faces[face].surface;
+  for (int axis = 0; axis < 3; ++axis)
+    if (container.periodic[axis] && surface.is_plane() && std::abs(surface.normal[axis]) == 1.0) return axis;
+  return -1;
+}
+
 bool any_face_moves(const Container& container) {
   return std::any_of(container.faces.begin(), container.faces.end(), [](const ContainerFace& face) {
     return !face.velocity.isZero(0.0) || !face.angular_velocity.isZero(0.0);
@@ -218,9 +253,16 @@ ContainerGeometry geometry_after(const Container& container, double time, const 
     }
     return geometry_of_box(container, lower, container.upper - container.lower + time * stretching, origin);
   }
+  return geometry_of(container_after(container, time), origin);
+}
+
+Container container_after(const Container& container, double time) {
   Container moved = container;
-  for (ContainerFace& face : moved.faces) face.surface = surface_after(face, time);
-  return geometry_of(moved, origin);
+  for (ContainerFace& face : moved.faces) {
+    face.surface = surface_after(face, time);
+    face.pivot += time * face.velocity;
+  }
+  return moved;
 }
 
 ContainerGeometry geometry_of(const Container& container, const Vector& origin) {

@@ -21,7 +21,10 @@ struct ContainerGeometry {
 /// Throws InputError for a container that is open or empty. Cost: faces², but for a box.
 ContainerGeometry geometry_of(const Container& container, const Eigen::Vector3d& origin);
 
-/// The same when the faces have gone on moving as they do for `time` (s; may be negative).
+/// With the surfaces and pivots of its faces where they are after some time of their motion (s; may be negative); the bounds
+/// stay as they were.
+Container container_after(const Container& container, double time);
+/// What `geometry_of` gives when the faces have gone on moving as they do for `time` (s; may be negative).
 ContainerGeometry geometry_after(const Container& container, double time, const Eigen::Vector3d& origin);
 /// All that `check` does but for measuring the faces: for a container whose faces are where they have been checked.
 void check_conditions(const Container& container);
@@ -29,6 +32,8 @@ void check_conditions(const Container& container);
 /// Whether a face moves.
 bool any_face_moves(const Container& container);
 
+/// The periodic axis that a face bounds, of which it is an end and no wall, or -1.
+int periodic_axis(const Container& container, int face);
 /// The two ends of a cylinder: planes square to its axis, the one at the start of the axis first.
 std::array<int, 2> ends_of_cylinder(const Container& container);
 /// The cylinder among the faces, if there is one.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/forces.hpp"
 
+#include "problem/container_geometry.hpp"
 #include "step/operators.hpp"
 #include "work/phase_clock.hpp"
 
@@ -131,7 +132,7 @@ std::vector<FaceResult> face_forces(const BuiltNetwork& built, const Solution& s
     faces[f].force_pressure = of_pressure.head<3>();
     if (solution.loads.cols() == 0) continue;
     // on a periodic face that moves the fluid's stress, whatever carries it
-    const bool periodic = f < 6 && solution.container.periodic[f / 2];
+    const bool periodic = periodic_axis(solution.container, f) >= 0;
     (periodic ? faces[f].force_pressure : faces[f].force_viscous) += solution.loads.col(spheres + f).head<3>();
     if (moments) faces[f].moment = moment_about_zero(of_pressure + solution.loads.col(spheres + f), built.network.origin);
   }

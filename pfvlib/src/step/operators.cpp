@@ -138,7 +138,7 @@ Eigen::Matrix3d velocities_of_periods(const BuiltNetwork& built, const Motion& m
   const Eigen::Index spheres = built.grains.spheres.size();
   Eigen::Matrix3d of_periods = Eigen::Matrix3d::Zero();
   for (int axis = 0; axis < 3; ++axis)
-    if (built.container.periodic[axis])
+    if (built.container.periodic[axis] && built.container.is_box)
       of_periods.col(axis) =
           (motion.col(spheres + 2 * axis + 1) - motion.col(spheres + 2 * axis)).head<3>();
   return of_periods;
