@@ -117,7 +117,8 @@ struct Conductance {
 
 Conductance conductance_of(ConductanceLaw law, double viscosity, const PoreNetwork& network,
                            const Throats& throats, const Spheres& spheres, int t) {
-  if (is_closed(throats, t)) return {0.0, true};
+  const bool as_one = law == ConductanceLaw::open_throat && throats.kite_rows.of(t);
+  if (!as_one && is_closed(throats, t)) return {0.0, true};
   const double scale = 1.0 / (viscosity * throats.length[t]);
   Conductance result;
   if (law == ConductanceLaw::effective_radius) {

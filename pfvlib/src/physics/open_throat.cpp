@@ -20,6 +20,7 @@ constexpr double wall_share = 2.0 / 3.0;     // of the wall's area that the thro
 constexpr double plate_kozeny = 3.0;         // Poiseuille flow between plates
 constexpr double hidden_wall_share = 0.8;    // of the caps beyond walls
 constexpr double largest_per_area2 = 1e3;    // bound on mu g / S²
+constexpr double closed_share = 1e-12;       // of a row of kites that is fluid
 
 /// Share of a side (between two spheres, or a sphere and a wall) that its gap has opened.
 double side_openness(double distance, double radii) {
@@ -130,29 +131,69 @@ struct Measures {
   double mirrored_area = 0.0;  ///< with what slip walls mirror
 };
 
-Measures measure(const PoreNetwork& network, const Throats& throats, const Spheres& spheres,
-                 int t) {
-  Measures sum;
-  sum.fluid = throats.volume[t];
-  for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
-    const auto& facet = network.facet_vertices[f];
-    std::array<bool, 3> sticks{};
-    double area = area_vector(facet, spheres).norm();
-    const Hidden hidden = hidden_in_facet(network, spheres, t, f);
-    sum.fluid += hidden.volume;
-    sum.spheres -= hidden.area;
-    sum.hidden += hidden.area;
-    for (int i = 0; i < 3; ++i) {
-      const double gamma = throats.facet_gamma[f][i];
-      sticks[i] = is_wall(facet[i]) && gamma > 0.0;
-      (is_wall(facet[i]) ? sum.walls : sum.spheres) += (sticks[i] ? wall_share : 1.0) * gamma;
-    }
-    sum.openness += area * facet_openness(facet, sticks, spheres) / throats.area[t];
-    for (int i = 1; i < 3; ++i)
-      if (is_wall(facet[i]) && !sticks[i]) area *= 2.0;
-    sum.mirrored_area += area;
+/// Facet f of throat t; its openness counts as its share of an area. What is turned over counts negative in a row.
+void add_facet(Measures& sum, const PoreNetwork& network, const Throats& throats, const Spheres& spheres, int t, int f,
+               bool in_row) {
+  const auto& facet = network.facet_vertices[f];
+  std::array<bool, 3> sticks{};
+  double area = area_vector(facet, spheres).norm();
+  const Hidden hidden = hidden_in_facet(network, spheres, t, f);
+  sum.fluid += hidden.volume;
+  sum.spheres -= hidden.area;
+  sum.hidden += hidden.area;
+  for (int i = 0; i < 3; ++i) {
+    const double gamma = throats.facet_gamma[f][i];
+    sticks[i] = is_wall(facet[i]) && (in_row ? gamma != 0.0 : gamma > 0.0);
+    (is_wall(facet[i]) ? sum.walls : sum.spheres) += (sticks[i] ? wall_share : 1.0) * gamma;
   }
-  return sum;
+  sum.openness += area * facet_openness(facet, sticks, spheres) / (in_row ? 1.0 : throats.area[t]);
+  for (int i = 1; i < 3; ++i)
+    if (is_wall(facet[i]) && !sticks[i]) area *= 2.0;
+  sum.mirrored_area += area;
+}
+
+/// A throat, or those of a row as one.
+struct Whole {
+  Measures sum;
+  double area = 0.0, fluid_area = 0.0;
+  double domain = 0.0;  ///< its volume, solid included, m³
+};
+
+Whole measure(const PoreNetwork& network, const Throats& throats, const Spheres& spheres, int t) {
+  Whole whole{{}, throats.area[t], throats.fluid_area[t], domain_of(throats, t)};
+  whole.sum.fluid = throats.volume[t];
+  for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
+    add_facet(whole.sum, network, throats, spheres, t, f, false);
+  return whole;
+}
+
+/// Of a kite between the walls that end a row.
+double openness_of(const KiteRow& row, const PoreNetwork& network, const Throats& throats, const Spheres& spheres) {
+  std::array<bool, 3> sticks{};
+  for (const int t : row.throats)
+    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f)
+      for (int i = 0; i < 3; ++i)
+        for (int end = 0; end < 2; ++end)
+          if (network.facet_vertices[f][i] == row.ends[end] && throats.facet_gamma[f][i] != 0.0) sticks[end + 1] = true;
+  return facet_openness({row.sphere, row.ends[0], row.ends[1]}, sticks, spheres);
+}
+
+Whole measure(const PoreNetwork& network, const Throats& throats, const Spheres& spheres, const KiteRow& row) {
+  Whole whole;
+  double areas = 0.0;  // none negative
+  for (const int t : row.throats) {
+    whole.area += throats.area[t];
+    whole.fluid_area += throats.fluid_area[t];
+    whole.domain += domain_of(throats, t);
+    whole.sum.fluid += throats.volume[t];
+    for (int f = network.throat_facets[t]; f < network.throat_facets[t + 1]; ++f) {
+      areas += area_vector(network.facet_vertices[f], spheres).norm();
+      add_facet(whole.sum, network, throats, spheres, t, f, true);
+    }
+  }
+  whole.sum.openness =
+      row.ends[0] != 0 ? openness_of(row, network, throats, spheres) : whole.sum.openness / std::max(areas, whole.area);
+  return whole;
 }
 
 }  // namespace
@@ -160,8 +201,14 @@ Measures measure(const PoreNetwork& network, const Throats& throats, const Spher
 OpenThroat open_throat(const PoreNetwork& network, const Throats& throats, const Spheres& spheres,
                        int t) {
   OpenThroat result;
-  const Measures throat = measure(network, throats, spheres, t);
-  const double area = throats.area[t], gamma = throat.spheres + throat.walls;
+  const KiteRow* row = throats.kite_rows.of(t);
+  const Whole whole = row ? measure(network, throats, spheres, *row) : measure(network, throats, spheres, t);
+  const Measures& throat = whole.sum;
+  const double area = whole.area, gamma = throat.spheres + throat.walls;
+  if (row && !(area > 0.0 && whole.fluid_area > closed_share * area)) {
+    result.by_rule = true;
+    return result;
+  }
   result.by_rule = throat.fluid <= 0.0 || gamma <= 0.0;
   double radius = 0.0, solid = 0.0, kozeny = 0.0;
   if (result.by_rule) {
@@ -172,7 +219,7 @@ OpenThroat open_throat(const PoreNetwork& network, const Throats& throats, const
     kozeny = kuwabara_kozeny(solid);
   } else {
     radius = throat.fluid / gamma;
-    solid = solid_fraction(throat.fluid, domain_of(throats, t));
+    solid = solid_fraction(throat.fluid, whole.domain);
     const double root = (std::max(0.0, throat.spheres) * std::sqrt(kuwabara_kozeny(solid)) +
                          throat.walls * std::sqrt(plate_kozeny)) / gamma;
     kozeny = root * root;
@@ -180,13 +227,14 @@ OpenThroat open_throat(const PoreNetwork& network, const Throats& throats, const
     result.hidden_share = std::max(0.0, throat.hidden) / (gamma + std::max(0.0, throat.hidden));
   }
   if (!(radius > 0.0)) return result;
-  const double touching = 1.0 / (alpha * throats.fluid_area[t] * radius * radius);
+  const double touching = 1.0 / (alpha * whole.fluid_area * radius * radius);
   const double drag = throat.openness * kozeny / (area * (1.0 - solid) * radius * radius);
   result.value = 1.0 / (touching + drag);
   result.drag_share = drag > 0.0 ? drag / (touching + drag) : 0.0;
   const double bound = largest_per_area2 * area * throat.mirrored_area;
   result.at_bound = result.value > bound;
   result.value = std::min(result.value, bound);
+  if (row) result.value *= throats.kite_rows.share[t];
   return result;
 }
 

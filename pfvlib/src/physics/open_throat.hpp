@@ -31,7 +31,8 @@ struct OpenThroat {
 ///       is left out, a slip wall mirrors the facet, a no-slip wall is a side with w = 0.
 /// Limits: the hydraulic radius where spheres touch (w = 0); Stokes' drag on single spheres where
 /// they are far apart (w = 1, k = 1 / (2 (1 - e))). All of it adds up, or is a mean, over the
-/// pieces of a polygon. Fitted: 0.18 and its power on SC, BCC and FCC at radius scales 0.95 to 0.7;
+/// pieces of a polygon, and over a row of kites, of which each throat gets its share. Fitted: 0.18 and its power on
+/// SC, BCC and FCC at radius scales 0.95 to 0.7;
 /// the share of caps on two dense beds. Not fitted: overlapping lattices, random beds, the
 /// nine-sphere cell, 24 and 36 spheres with either wall.
 ///

@@ -315,6 +315,7 @@ Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& bounda
         add_to_pores(throats, network, halves[f - first_facet], t);
   }
   if (any_round_wall(spheres)) add_bulges(throats, network, spheres);
+  throats.kite_rows = find_kite_rows(network, spheres);
   return throats;
 }
 

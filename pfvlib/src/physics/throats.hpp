@@ -5,6 +5,7 @@
 #include "network/spheres.hpp"
 #include "parallel/team.hpp"
 #include "pfv/network.hpp"
+#include "physics/kite_rows.hpp"
 
 #include <array>
 #include <vector>
@@ -34,6 +35,7 @@ struct Throats {
   /// other throats; empty without such a wall.
   std::vector<double> round_domain;
   std::vector<double> conductance_factor;  ///< empty, or what the law's result is multiplied with
+  KiteRows kite_rows;                ///< those that conduct as one
 
   // one entry a pore
   std::vector<double> pore_volume;        ///< of its cells, solid included, m³

@@ -116,12 +116,30 @@ void require_different_planes(const Container& container) {
     }
 }
 
+/// Of a strip its width: twice the area over the length around it, m.
+double width_of(const std::vector<Eigen::Vector3d>& polygon, double area) {
+  double around = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) around += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
+  return 2.0 * area / around;
+}
+
+/// Of the container's size: between the edges of a narrower face the triangulation sees rounding alone.
+constexpr double least_width = 1e-8;
+
 void refuse_idle_faces(const Container& container) {
-  const std::vector<double> areas = face_areas(container);
-  for (int f = 0; f < container.face_count(); ++f)
-    if (!(areas[f] > 0.0) && !container.faces[f].may_bound_nothing)
-      throw InputError("container: face " + container.faces[f].name +
-                       " bounds nothing, since others keep the fluid from it; remove it, or turn its normal");
+  const ContainerGeometry geometry = geometry_of(container, container.lower);
+  const double size = (container.upper - container.lower).norm();
+  for (int f = 0; f < container.face_count(); ++f) {
+    if (container.faces[f].may_bound_nothing) continue;
+    const std::string name = "container: face " + container.faces[f].name;
+    if (!(geometry.areas[f] > 0.0))
+      throw InputError(name + " bounds nothing, since others keep the fluid from it; remove it, or turn its normal");
+    if (geometry.polygons.empty() || geometry.polygons[f].empty()) continue;
+    const double width = width_of(geometry.polygons[f], geometry.areas[f]);
+    if (width < least_width * size)
+      throw InputError(name + " is a strip " + detail::number_text(width) + " m wide between others, which is rounding to a "
+                       "container of " + detail::number_text(size) + " m; leave it out");
+  }
 }
 
 /// Of all faces together, their motion aside.
