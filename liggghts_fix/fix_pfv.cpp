@@ -48,7 +48,7 @@ FixPfv::FixPfv(LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg), faces_(
   global_freq = 1;
   peratom_flag = 1;
   size_peratom_cols = PfvGrainExchange::returned_width;
-  schedule_ = PfvSolveSchedule(settings_.steps.couple_error);
+  schedule_.adapt_within(settings_.steps.couple_error);
   peratom_freq = 1;
   restart_global = 1;
 }

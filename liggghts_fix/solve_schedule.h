@@ -38,7 +38,7 @@ struct PfvSinceSolve {
 class PfvSolveSchedule {
  public:
   /// With a `tolerance` (of the load, 1 is all of it) the interval is the flow's own choice.
-  explicit PfvSolveSchedule(std::optional<double> tolerance = {}) {
+  void adapt_within(const std::optional<double>& tolerance) {
     if (tolerance) plan_.emplace(*tolerance);
   }
 
