@@ -12,6 +12,7 @@
 #include "support/containers.hpp"
 #include "support/fuzzing.hpp"
 #include "support/long_steps.hpp"
+#include "text/number_text.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -444,9 +445,9 @@ void run_flow(Case& c, Outcome& outcome) {
 
 Outcome examine(Case c) {
   Outcome outcome = fuzzing::examine([&](Outcome& of) { run_flow(c, of); });
-  if (outcome.mass > 1e-6) outcome.fail("mass error " + std::to_string(outcome.mass));
-  if (outcome.balance > 1e-11) outcome.fail("unbalanced forces, " + std::to_string(outcome.balance));
-  if (outcome.volume > kinds[c.kind].volume) outcome.fail("volumes of pores that are off by " + std::to_string(outcome.volume));
+  if (outcome.mass > 1e-6) outcome.fail("mass error " + pfv::detail::number_text(outcome.mass));
+  if (outcome.balance > 1e-11) outcome.fail("unbalanced forces, " + pfv::detail::number_text(outcome.balance));
+  if (outcome.volume > kinds[c.kind].volume) outcome.fail("volumes of pores that are off by " + pfv::detail::number_text(outcome.volume));
   return outcome;
 }
 
