@@ -75,6 +75,28 @@ TEST(ObtuseEdges, AFaceAsNarrowAsRoundingIsRefused) {
   }
 }
 
+// The triangulation places walls to a few 1e-9 of the box, and may not see one of two that meet at such an angle: its
+// pressure was left out without a word.
+TEST(ObtuseEdges, APressureActsOrIsRefused) {
+  const pfv::PackingArrays packing = data_packing("packing_100.csv");
+  int refused = 0;
+  for (const double angle : {1e-2, 1e-4, 1e-6, 1e-7, 3e-8, 1e-8, 4e-9}) {
+    std::vector<pfv::ContainerFace> faces = bevelled_cube(0.0, 0);
+    faces.push_back(plane_face("twin", {0.6 * angle, 0.8 * angle, 1.0}, {0.5, 0.5, 1.0}));
+    pfv::Flow flow(driven(faces, "twin", "", pfv::Wall::no_slip), viscosity_one());
+    try {
+      flow.evaluate(packing.view());
+      EXPECT_LT((flow.pore_pressures().array() - 1.0).abs().maxCoeff(), 1e-12) << angle;
+    } catch (const pfv::InputError& problem) {
+      ++refused;
+      EXPECT_NE(std::string(problem.what()).find("face twin: its pressure has no pore to act on"), std::string::npos)
+          << problem.what();
+      EXPECT_LT(angle, 1e-5);
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
 // A loose bed: throats at the wall are wide, and much of their fluid is beyond the pyramids on their facets.
 TEST(ObtuseEdges, FlatsConductWhatTheCylinderDoes) {
   const pfv::PackingArrays packing = data_packing("cylinder_loose_20.csv");

@@ -116,6 +116,27 @@ void leave_to_lowest_rank(std::vector<int>& fed_by, const Share& share) {
     if (!share.is_lowest(pore >= 0)) pore = -1;
 }
 
+/// What is imposed where no pore is would be left out without a word: a flux, or the pressure of a face that is smaller
+/// than what the triangulation sees. A face whose pores belong to its patches has nothing to lose.
+void refuse_lost_boundaries(const Unknowns& unknowns, const PoreBoundaries& boundaries, const Container& container,
+                            const Share& share) {
+  std::vector<char> touched(container.faces.size(), 0);
+  for (const auto& contact : boundaries.contacts)
+    if (contact.face != PoreBoundaries::inside) touched[contact.face] = 1;
+  for (int b = 0; b < static_cast<int>(unknowns.of_boundary.size()); ++b) {
+    const Boundary& boundary = boundary_of(container, b);
+    if (boundary.drives_flux() && share.largest(unknowns.of_boundary[b]) < 0.0)
+      throw InputError(boundary_name(container, b) +
+                       ": its flux has no pore to enter (all its pores carry an imposed pressure, "
+                       "or it has none); give the flux to another face or enlarge the patch or region");
+    if (b < container.face_count() && boundary.imposes_pressure() && !share.any(touched[b] != 0) &&
+        face_areas(container)[b] > 0.0)
+      throw InputError(boundary_name(container, b) +
+                       ": its pressure has no pore to act on, since the face is too small beside the faces around it; "
+                       "give the pressure to one of those, or to a patch");
+  }
+}
+
 }  // namespace
 
 Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,
@@ -141,13 +162,7 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
     if (fed < 0 && share.owns_pore(pore)) fed = pore;
   }
   leave_to_lowest_rank(unknowns.fed_by, share);
-  for (int b = 0; b < static_cast<int>(unknowns.of_boundary.size()); ++b) {
-    const Boundary& boundary = boundary_of(container, b);
-    if (boundary.drives_flux() && share.largest(unknowns.of_boundary[b]) < 0.0)
-      throw InputError(boundary_name(container, b) +
-                       ": its flux has no pore to enter (all its pores carry an imposed pressure, "
-                       "or it has none); give the flux to another face or enlarge the patch or region");
-  }
+  refuse_lost_boundaries(unknowns, boundaries, container, share);
   return unknowns;
 }
 
