@@ -58,6 +58,22 @@ class Undrained(CoupledTest):
             undrained = oedometric + bulk_modulus / POROSITY
             self.assertAlmostEqual(stress / STRAIN / undrained, 1.0, delta=0.02)
 
+    def test_a_surface_that_follows_the_grains_pulls_no_water(self):
+        """`extent` moves with the outermost grains and lets the water beyond it come along, whatever its modulus."""
+        pressures = []
+        for modulus in ("", "bulk_modulus 1e9"):
+            self.liggghts("include in.packing\n"
+                          "velocity all ramp vz 0 0.5 z 0 0.1 units box\n"
+                          f"fix flow all pfv viscosity 0.01 {faces(zhi='extent pressure 0')} couple_every 1 {modulus}\n"
+                          "thermo_style custom step f_flow[7] f_flow[5]\nthermo_modify norm no format float %.15g\n"
+                          "thermo 1\nrun 200\n")
+            rows = read_thermo((self.folder / "log.liggghts").read_text())
+            self.assertGreater(rows[-1]["flow[5]"], 2)
+            pressures.append([row["flow[7]"] for row in rows[10:]])
+        scale = max(map(abs, pressures[0]))
+        for without, stiff in zip(*pressures):
+            self.assertLess(abs(stiff - without), 0.02 * scale)
+
     def test_new_networks_on_the_way_keep_the_pressure(self):
         words = f"fix flow all pfv viscosity 0.01 {SEALED} bulk_modulus 1e7\n"
         _, kept, none = self.compressed(words)

@@ -241,7 +241,7 @@ void Flow::set_state(FlowState state) {
   parts_->keeper.restore(state.strain, state.retriangulations);
   memory.restored = std::move(state.pore_pressures);
   memory.volume_debt = state.volume_debt;
-  memory.account = {state.fluid_at_start != 0.0, state.fluid_at_start, state.fluid_came_in, 0.0};
+  memory.account = {state.fluid_at_start != 0.0, state.fluid_at_start, state.fluid_came_in, 0.0, false};
 }
 
 }  // namespace pfv

@@ -18,6 +18,20 @@ double way_between(const Surface& before, const Surface& now, const Eigen::Vecto
          reach * (now.axis - before.axis).norm();
 }
 
+/// The face of a container, with its bounds where it is a box, as it stood before.
+void put_back(Container& container, std::size_t face, const Surface& before) {
+  Surface& now = container.faces[face].surface;
+  if (container.is_box) {
+    const Eigen::Vector3d way = (before.distance(container.lower) - now.distance(container.lower)) * now.normal;
+    (now.normal.sum() > 0.0 ? container.upper : container.lower) += way;
+  }
+  now = before;
+}
+
+bool moves(const ContainerFace& face) {
+  return !face.velocity.isZero(0.0) || !face.angular_velocity.isZero(0.0);
+}
+
 /// How far the face moves in that time at most, m.
 double way_of(const ContainerFace& face, double time, const Eigen::Vector3d& middle, double reach) {
   const double turning = face.angular_velocity.norm();
@@ -34,7 +48,10 @@ void FaceJumps::begin(const Container& container, double step) {
 
 void FaceJumps::pass(const Container& container, double step) {
   const std::vector<double> ways = unexplained_ways(container, step);
-  for (std::size_t f = 0; f < ways.size(); ++f) drifts_[f] += ways[f];
+  for (std::size_t f = 0; f < ways.size(); ++f) {
+    drifts_[f] += ways[f];
+    moved_[f] = moved_[f] || moves(container.faces[f]);
+  }
   last_ = container;
   last_step_ = step;
 }
@@ -58,6 +75,25 @@ bool FaceJumps::any(const Container& container, double step, double at_once, dou
   for (std::size_t f = 0; f < ways.size(); ++f)
     if (ways[f] > at_once || drifts_[f] + ways[f] > in_all) return true;
   return false;
+}
+
+double FaceJumps::volume_put(const Container& container) {
+  Container before = container;
+  bool any = false;
+  for (std::size_t f = 0; stood_.size() == container.faces.size() && f < stood_.size(); ++f)
+    if (!moved_[f] && !moves(container.faces[f])) {
+      any = any || way_between(stood_[f], container.faces[f].surface, container.lower, 0.0) > 0.0;
+      put_back(before, f, stood_[f]);
+    }
+  stood_.clear();
+  moved_.clear();
+  for (const ContainerFace& face : container.faces) {
+    stood_.push_back(face.surface);
+    moved_.push_back(moves(face));
+  }
+  if (!any) return 0.0;
+  find_bounds(before);
+  return volume_of(container) - volume_of(before);
 }
 
 }  // namespace pfv

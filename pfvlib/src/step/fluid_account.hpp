@@ -12,6 +12,7 @@ struct FluidAccount {
   double at_start = 0.0;  ///< in the box at the first solve, m³
   double came_in = 0.0;   ///< since then, less what left, m³
   double ahead = 0.0;     ///< what of it belongs to the motion that a long step has begun, m³
+  bool within_long_step = false;  ///< whether the last step was one
 };
 
 /// Volume of the fluid in a box: the box less the whole volumes of the grains with their centre in it, whether

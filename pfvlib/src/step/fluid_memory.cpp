@@ -70,7 +70,7 @@ void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetw
     account = {true,
                space_around(now, volume_of(problem.container)) +
                    compressed_in(now, fluid, memory.pressures) - swept,
-               0.0, 0.0};
+               0.0, 0.0, false};
     return;
   }
   if (!before.grains) return;
@@ -82,9 +82,11 @@ void settle_account(FluidMemory& memory, const Replaced& before, const BuiltNetw
   if (before.moved_by_host) {
     account.came_in += missing + growth;
     missing = -growth;
-  } else if (account.ahead != 0.0) {
+  } else {
+    account.came_in += before.put;
+    missing -= before.put;
     // where faces are within a long step is known up to a part of that step
-    missing = memory.volume_debt - growth;
+    if (account.within_long_step) missing = memory.volume_debt - growth;
   }
   if (!fluid.bulk_modulus) return;
   const double volume = now.share.sum(storage_volumes(now.throats).sum());
@@ -118,7 +120,8 @@ void remember(FluidMemory& memory, const BuiltNetwork& built, const Fluid& fluid
   memory.volume_debt = solution.unpaid;
   const double grown = solution.dt * built.share.sum(solution.rates.sum());
   memory.account.came_in += grown;
-  memory.account.ahead = solution.stages > 1 || solution.implicit ? grown : 0.0;
+  memory.account.within_long_step = solution.stages > 1 || solution.implicit;
+  memory.account.ahead = memory.account.within_long_step ? grown : 0.0;
   if (built.kept.compressible())
     memory.account.came_in += solution.dt * built.share.sum(built.kept.storage->dot(solution.pressures -
                                                                                    solution.previous_pressures));

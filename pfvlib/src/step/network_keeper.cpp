@@ -118,7 +118,7 @@ void NetworkKeeper::take_up_next(const Problem& problem, const Solution& last, W
 
 void NetworkKeeper::take_up(std::unique_ptr<BuiltNetwork> fresh, const Problem& problem,
                             double strain, WorkRecord& work, const TakenUp& taken_up) {
-  Replaced replaced{std::move(built_), std::move(former_grains_), moved_by_host_};
+  Replaced replaced{std::move(built_), std::move(former_grains_), moved_by_host_, jumps_.volume_put(problem.container)};
   former_grains_.reset();
   built_ = std::move(fresh);
   const int pores = built_->network.pores();

@@ -39,6 +39,7 @@ struct Replaced {
   std::unique_ptr<BuiltNetwork> network;  ///< null where nothing of it is wanted any more
   std::optional<Spheres> grains;          ///< of it; none before the first network
   bool moved_by_host = false;             ///< the host has asked for the new one
+  double put = 0.0;                       ///< FaceJumps::volume_put since it was taken up, m³
 };
 
 /// The network in use: knows when it no longer matches the grains, and builds the next one, at once or in the
