@@ -357,7 +357,9 @@ void FixPfv::advance() {
   if (cell_.any()) since_.cell_rates = cell_.rates_since(since_.face_positions, since_.time);
   read_host();
   pfv::Container now = current_container();
-  const double imposed = adapts() && ranks_.is_first() ? pfv::change_of_imposed_values(now, container_) : 0.0;
+  const double thickened = change_of_viscosity();
+  const double imposed =
+      std::max(thickened, adapts() && ranks_.is_first() ? pfv::change_of_imposed_values(now, container_) : 0.0);
   container_ = std::move(now);
   // x is that of the step's end and v that of its middle: just what backward Euler needs; over
   // several steps the displacement gives the mean (Catalano 2012, eq. 4.8)
@@ -369,9 +371,12 @@ void FixPfv::advance() {
   on_flow([&] {
     place_faces(container_);
     if (mean) grains_.use_mean_velocities(since_.grains, since_.time, lengths);
-    flow_->set_container(container_);
+    flow_.prepare(container_, settings_, grains_.packing(), since_.time, ranks_.library());
     call_flow(since_.time, true);
-    watch_time_step();
+    if (thickened > 0.0)
+      check_time_step();
+    else
+      watch_time_step();
     // a later run must not take an old one for that of the last solve
     const bool is_needed = settings_.steps.couple_every > 1 || adapts() || cell_.changes();
     since_.grains = is_needed ? grains_.snapshot() : PfvSnapshot{};
@@ -382,6 +387,7 @@ void FixPfv::advance() {
 }
 
 void FixPfv::after_flow_call() {
+  since_.viscosity = settings_.fluid.viscosity;
   const Eigen::MatrixXd stresses = stresses_where_due();
   on_flow([&] {
     flow_.forget_results();

@@ -130,6 +130,7 @@ class FixPfv : public Fix {
   // when to solve the flow
   bool adapts() const;
   bool solve_due();
+  double change_of_viscosity() const;
   int column_of_radii() const;
   PfvPresent look_around() const;
   bool has_jumped(const PfvPresent& present, double imposed) const;

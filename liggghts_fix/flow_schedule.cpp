@@ -9,6 +9,7 @@
 
 #include <mpi.h>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -27,8 +28,15 @@ PfvPresent FixPfv::look_around() const {
   return present_of(atom, groupbit, per_atom_->array_atom, column_of_radii(), meshes, world);
 }
 
+/// Of the fluid since the last solve, as a part of the larger: fix_modify before a run without a setup (`pre no`, `every`).
+double FixPfv::change_of_viscosity() const {
+  const double before = since_.viscosity, now = settings_.fluid.viscosity;
+  return std::abs(now - before) / std::max(now, before);
+}
+
 /// Of one answer for all ranks, for what follows is collective: only where the flow is are the faces' places known.
 bool FixPfv::solve_due() {
+  if (change_of_viscosity() > 0.0) return true;
   if (!adapts()) return since_.steps >= settings_.steps.couple_every;
   const pfv::NextSolve& next = schedule_.next();
   if (since_.steps >= next.steps) return true;

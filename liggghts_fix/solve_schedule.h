@@ -30,6 +30,7 @@ struct PfvSinceSolve {
   PfvSnapshot grains;                   // where the flow is
   PfvPresent present;                   // at it
   bool jumped = false;                  // in the interval of several steps that ended with it
+  double viscosity = 0.0;               // of the fluid at it, Pa s
   std::optional<std::uint64_t> in_restart_file;  // fingerprint of what it was written with; none after a run
   bool from_older_file = false;         // without a fingerprint, and no run since
 };

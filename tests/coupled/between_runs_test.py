@@ -31,6 +31,17 @@ class BetweenRuns(CoupledTest):
         kept, new = ((self.folder / name).read_bytes() for name in ("kept.dump", "new.dump"))
         self.assertEqual(kept, new)
 
+    def test_a_viscosity_that_changes_before_a_run_without_a_setup(self):
+        """`run ... every` and `pre no` leave the setup out; the next step has the new viscosity all the same."""
+        script = (HEAD + f"fix flow all pfv viscosity 0.01 {WATER.split(' ', 2)[2]} {{}}\n" +
+                  THERMO + "thermo 1\nrun 2\n")
+        for steps in ("couple_every 1", "couple_every 3", "couple_every auto"):
+            inflow = {}
+            for viscosity in (0.01, 0.5):
+                screen = self.liggghts(script.format(steps) + f"fix_modify flow viscosity {viscosity}\nrun 1 pre no\n")
+                inflow[viscosity] = read_thermo(screen)[-1]["flow[1]"]
+            self.assertAlmostEqual(inflow[0.01] / inflow[0.5] / 50, 1.0, delta=0.02, msg=steps)
+
     # what moves
 
     def test_grains_that_are_displaced(self):
