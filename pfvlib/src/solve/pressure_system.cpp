@@ -117,9 +117,11 @@ void leave_to_lowest_rank(std::vector<int>& fed_by, const Share& share) {
 }
 
 /// What is imposed where no pore is would be left out without a word: a flux, or the pressure of a face that is smaller
-/// than what the triangulation sees. A face whose pores belong to its patches has nothing to lose.
+/// than what the triangulation sees. A face whose pores belong to its patches has nothing to lose, nor has one of a room
+/// without grains, and so without pores.
 void refuse_lost_boundaries(const Unknowns& unknowns, const PoreBoundaries& boundaries, const Container& container,
                             const Share& share) {
+  const bool any_pore = share.any(!boundaries.contacts.empty());
   std::vector<char> touched(container.faces.size(), 0);
   for (const auto& contact : boundaries.contacts)
     if (contact.face != PoreBoundaries::inside) touched[contact.face] = 1;
@@ -129,7 +131,7 @@ void refuse_lost_boundaries(const Unknowns& unknowns, const PoreBoundaries& boun
       throw InputError(boundary_name(container, b) +
                        ": its flux has no pore to enter (all its pores carry an imposed pressure, "
                        "or it has none); give the flux to another face or enlarge the patch or region");
-    if (b < container.face_count() && boundary.imposes_pressure() && !share.any(touched[b] != 0) &&
+    if (b < container.face_count() && boundary.imposes_pressure() && any_pore && !share.any(touched[b] != 0) &&
         face_areas(container)[b] > 0.0)
       throw InputError(boundary_name(container, b) +
                        ": its pressure has no pore to act on, since the face is too small beside the faces around it; "
