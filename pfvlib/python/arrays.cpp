@@ -20,6 +20,14 @@ void require_kind(const py::array& array, const char* name, const char* kinds, c
                          wanted);
 }
 
+/// NumPy keeps some value behind a mask, which nobody means.
+void refuse_masked(py::handle given, const char* name) {
+  if (!py::hasattr(given, "mask")) return;
+  if (!py::isinstance(given, py::module_::import("numpy.ma").attr("MaskedArray"))) return;
+  if (py::cast<bool>(given.attr("mask").attr("any")()))
+    throw InputError(std::string(name) + " has masked values: give numbers in their place, or leave their rows out");
+}
+
 /// Nothing has to be made of it.
 template <class Number>
 bool is_as_wanted(py::handle given) {
@@ -29,6 +37,7 @@ bool is_as_wanted(py::handle given) {
 
 template <class Number>
 Numbers<Number> numbers_of(py::handle given, const char* name, const char* kinds, const char* wanted) {
+  refuse_masked(given, name);
   if (is_as_wanted<Number>(given)) return py::reinterpret_borrow<Numbers<Number>>(given);
   const py::array array = py::array::ensure(given);
   if (!array) throw py::type_error(std::string(name) + " is no array: give " + wanted);

@@ -197,7 +197,9 @@ void add_state(py::class_<FlowHost>& flow) {
 
 A Flow with the same settings takes it up by `restore`. The pressures are those of the present network, so that the
 next packing must give the same one: that from which it was built, or call `rebuild` before the last step.)");
-  flow.def("restore", &restore, "state"_a, "Takes up what `state` returned; the next step goes on from there.");
+  flow.def("restore", &restore, "state"_a, R"(Takes up what `state` returned, of this flow or another; the next step goes on from there.
+
+That step makes its network anew; until then the flow holds no result.)");
   flow.def("report", &report_of, R"(Balances, permeability, counts, times of all done so far: a dict.
 
 It is the JSON report of `pfv solve`. Cost: a pass over the network and, the first time after a triangulation, the

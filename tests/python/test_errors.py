@@ -53,6 +53,18 @@ class Errors(unittest.TestCase):
         self.radii[3] = -1
         self.assertEqual(self.refused("sphere 3", "radius").spheres, (3,))
 
+    def test_what_is_masked_is_no_number(self):
+        masked = np.ma.masked_array(self.positions, mask=np.zeros_like(self.positions))
+        self.flow.evaluate(masked, self.radii)
+        masked[3, 1] = np.ma.masked
+        self.refused("positions", "masked", positions=masked)
+
+    def test_bad_numbers_are_named_on_a_network_that_is_kept(self):
+        flow = pfv.Flow(pfv.Box([[0, 1]] * 3).face("zhi", pressure=0.0))
+        flow.evaluate(self.positions, self.radii)
+        self.assertEqual(self.refused("sphere 6", "velocity", call=flow.evaluate,
+                                      velocities=np.where(np.arange(100)[:, None] == 6, np.nan, self.positions)).spheres, (6,))
+
     def test_culprits_are_ids(self):
         self.positions[5] = [2, 0.5, 0.5]
         self.assertEqual(self.refused("sphere 5", "not inside the box").spheres, (5,))

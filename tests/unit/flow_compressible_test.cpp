@@ -147,6 +147,23 @@ TEST(CompressibleFluid, RestartsFromItsState) {
   EXPECT_EQ(restarted.time(), flow.time());
 }
 
+// The flow that the state is of, too: its pressures went on as they were, with the time of the state.
+TEST(CompressibleFluid, GoesBackToItsOwnState) {
+  const SealedBox sealed;
+  pfv::Flow flow(sealed.box, compressible(), sealed.options), straight(sealed.box, compressible(), sealed.options);
+  for (int i = 0; i < 5; ++i) {
+    flow.step(sealed.packing.view(), dt);
+    straight.step(sealed.packing.view(), dt);
+  }
+  const pfv::FlowState state = flow.state();
+  for (int i = 0; i < 3; ++i) flow.step(sealed.packing.view(), 2 * dt);
+  flow.set_state(state);
+  EXPECT_THROW(flow.mean_pressure(), pfv::InputError);  // that of the steps that are taken back
+  EXPECT_TRUE(flow.step(sealed.packing.view(), dt).total == straight.step(sealed.packing.view(), dt).total);
+  EXPECT_EQ(flow.time(), straight.time());
+  EXPECT_EQ(flow.retriangulations(), 0);
+}
+
 TEST(CompressibleFluid, RefusesTheStateOfAnotherNetworkUntilItGetsItsOwn) {
   const SealedBox sealed;
   pfv::Flow flow(sealed.box, compressible(), sealed.options);

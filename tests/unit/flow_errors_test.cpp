@@ -131,6 +131,28 @@ TEST(NoPressureAnywhere, IsRefusedWithMovingGrainsFacesOrAFlux) {
   expect_line(refused(pfv::Box{}), "nothing determines the pressure");
 }
 
+// Also where the network is there already, whose checks are over.
+TEST(FlowCalls, NameTheSphereWhoseMotionIsNotFinite) {
+  auto packing = random_packing(20, 0.05, 0.1, 2);
+  pfv::Options options;
+  options.torques = true;
+  pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one(), options);
+  flow.evaluate(packing.view());
+  const double nan = std::nan("");
+  packing.velocities = Eigen::Matrix3Xd::Zero(3, 20);
+  packing.velocities(1, 4) = nan;
+  expect_line(refusal([&] { flow.evaluate(packing.view()); }), "sphere 5: its velocity");
+  packing.velocities(1, 4) = 0.0;
+  packing.angular_velocities = packing.velocities;
+  packing.angular_velocities(2, 6) = nan;
+  expect_line(refusal([&] { flow.evaluate(packing.view()); }), "sphere 7: its spin");
+  packing.angular_velocities.setZero();
+  flow.evaluate(packing.view());
+  packing.displaced_volumes = Eigen::VectorXd::Constant(20, 1e-3);
+  packing.displaced_volumes[8] = nan;
+  expect_line(refusal([&] { flow.evaluate(packing.view()); }), "sphere 9: its displaced volume");
+}
+
 TEST(FlowCalls, RefuseWhatTheyCannotUse) {
   const auto packing = random_packing(20, 0.05, 0.1, 2);
   pfv::Flow flow(upward_box(pfv::Wall::no_slip), viscosity_one());
@@ -140,6 +162,7 @@ TEST(FlowCalls, RefuseWhatTheyCannotUse) {
   flow.evaluate(packing.view());
   expect_line(refusal([&] { flow.pressure_at({0.5, 0.5, 1.5}); }), "outside");
   expect_line(refusal([&] { flow.plane_pressure(2, 1.5); }), "cuts no pore");
+  expect_line(refusal([&] { flow.plane_pressure(2, std::nan("")); }), "cuts no pore");
   expect_line(refusal([&] { flow.time_step_limit(Eigen::VectorXd::Ones(3)); }),
                        "masses");
   expect_line(refusal([&] { flow.time_step_limit(Eigen::VectorXd::Zero(20)); }),

@@ -5,6 +5,7 @@
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
 #include "problem/box_changes.hpp"
+#include "text/number_text.hpp"
 
 #include <cmath>
 #include <limits>
@@ -114,7 +115,7 @@ double DarcyGrid::plane_pressure(int axis, double position) const {
   const Grid& grid = data_->built->grid;
   const double relative = position - data_->built->lower[axis];
   if (!(relative >= 0.0 && relative <= grid.counts[axis] * grid.lengths[axis]))
-    throw InputError("the plane at " + std::to_string(position) + " m cuts no cell");
+    throw InputError("the plane at " + detail::number_text(position) + " m cuts no cell");
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   place[axis] = relative;
   const int layer = grid.place(grid.cell_at(place))[axis];

@@ -6,6 +6,8 @@
 #include "problem/box_changes.hpp"
 #include "problem/solver_abilities.hpp"
 #include "flow/flow_parts.hpp"
+#include "network/grains.hpp"
+#include "parallel/ranks.hpp"
 #include "step/forces.hpp"
 #include "step/network_builder.hpp"
 #include "step/operators.hpp"
@@ -181,6 +183,11 @@ Flow::Flow(Flow&&) noexcept = default;
 Flow& Flow::operator=(Flow&&) noexcept = default;
 
 const Forces& Flow::advance(const Packing& packing, double dt, const Step& step) {
+  const auto refuse_what_is_not_finite = [&] { check_motion(packing); };
+  if (parts_->ranks)
+    parts_->ranks->together(refuse_what_is_not_finite);
+  else
+    refuse_what_is_not_finite();
   const bool steady = step.coupling == Coupling::explicit_step && !step.commit;
   require_time_step(dt, !steady);
   if (parts_->fluid.bulk_modulus && !(dt > 0.0))
@@ -237,6 +244,10 @@ FlowState Flow::state() const {
 
 void Flow::set_state(FlowState state) {
   FluidMemory& memory = parts_->memory;
+  parts_->solved = false;  // what was found belongs to another state, as the network and its pressures do
+  parts_->kept_balance.reset();
+  memory.pressures.resize(0);
+  memory.pressed = false;
   memory.time = state.time;
   parts_->keeper.restore(state.strain, state.retriangulations);
   memory.restored = std::move(state.pore_pressures);

@@ -3,6 +3,7 @@
 
 #include "geometry/pi.hpp"
 #include "pfv/error.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,7 @@ PackingArrays dense_packing(int spheres, double solid_fraction, double spread, u
   if (spheres < 1 || !(solid_fraction > 0.0) || !(solid_fraction <= 0.66) || !(spread >= 0.0) ||
       !(spread < 1.0) || sweeps < 0)
     throw InputError("a packing of " + std::to_string(spheres) + " spheres, solid fraction " +
-                     std::to_string(solid_fraction) + " and spread " + std::to_string(spread) +
+                     detail::number_text(solid_fraction) + " and spread " + detail::number_text(spread) +
                      " cannot be made: give at least one sphere, a fraction in (0, 0.66] and a "
                      "spread in [0, 1)");
   std::mt19937_64 generator(seed);

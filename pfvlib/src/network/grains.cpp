@@ -44,14 +44,9 @@ void check_values(const Packing& packing) {
                            " is not finite",
                        {{packing.ids[k]}, {}});
     if (!(packing.radii[k] > 0.0) || !std::isfinite(packing.radii[k]))
-      throw InputError(sphere + ": its radius " + std::to_string(packing.radii[k]) +
+      throw InputError(sphere + ": its radius " + detail::number_text(packing.radii[k]) +
                            " is not a positive number",
                        {{packing.ids[k]}, {}});
-    if (packing.velocities.cols() > 0 && !packing.velocities.col(k).allFinite())
-      throw InputError(sphere + ": its velocity " + place(packing.velocities.col(k)) + " is not finite",
-                       {{packing.ids[k]}, {}});
-    if (packing.displaced_volumes.size() > 0 && !std::isfinite(packing.displaced_volumes[k]))
-      throw InputError(sphere + ": its displaced volume is not finite", {{packing.ids[k]}, {}});
     if (packing.bodies.size() > 0 && packing.bodies[k] < -1)
       throw InputError(sphere + ": there is no rigid body " + std::to_string(packing.bodies[k]) +
                            "; they are counted from 0 on, -1 is none",
@@ -82,9 +77,22 @@ void refuse_repeated_ids(const Packing& packing) {
 
 }  // namespace
 
+void check_motion(const Packing& packing) {
+  const auto refuse = [&](Eigen::Index k, const std::string& what) {
+    throw InputError("sphere " + std::to_string(packing.ids[k]) + ": its " + what + " is not finite", {{packing.ids[k]}, {}});
+  };
+  for (Eigen::Index k = 0; k < std::min(packing.velocities.cols(), packing.size()); ++k)
+    if (!packing.velocities.col(k).allFinite()) refuse(k, "velocity " + place(packing.velocities.col(k)));
+  for (Eigen::Index k = 0; k < std::min(packing.angular_velocities.cols(), packing.size()); ++k)
+    if (!packing.angular_velocities.col(k).allFinite()) refuse(k, "spin " + place(packing.angular_velocities.col(k)));
+  for (Eigen::Index k = 0; k < std::min(packing.displaced_volumes.size(), packing.size()); ++k)
+    if (!std::isfinite(packing.displaced_volumes[k])) refuse(k, "displaced volume");
+}
+
 void check_spheres(const Packing& packing) {
   check_shapes(packing);
   check_values(packing);
+  check_motion(packing);
   refuse_repeated_ids(packing);
 }
 

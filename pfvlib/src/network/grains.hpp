@@ -22,6 +22,9 @@ struct ActiveGrains {
 
 /// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0, repeated ids.
 void check_spheres(const Packing& packing);
+
+/// What a step reads of the spheres whatever network they have: InputError where it is not finite.
+void check_motion(const Packing& packing);
 /// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0 or a
 /// thousand times the box, repeated ids, and (OutsideGrains::refuse) a centre that is not inside the
 /// container or no grain at all.

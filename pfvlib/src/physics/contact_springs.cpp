@@ -2,6 +2,7 @@
 #include "pfv/error.hpp"
 #include "pfv/time_step.hpp"
 #include "physics/time_step_limit.hpp"
+#include "text/number_text.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -45,10 +46,10 @@ bool is_periodic(const Container& container, const Surface& surface) {
 
 void check(const ContactStiffness& stiffness) {
   if (!(stiffness.normal > 0.0) || !std::isfinite(stiffness.normal))
-    throw InputError("contact stiffness " + std::to_string(stiffness.normal) +
+    throw InputError("contact stiffness " + detail::number_text(stiffness.normal) +
                      " N/m: give a positive number");
   if (!(stiffness.tangential >= 0.0) || !std::isfinite(stiffness.tangential))
-    throw InputError("tangential contact stiffness " + std::to_string(stiffness.tangential) +
+    throw InputError("tangential contact stiffness " + detail::number_text(stiffness.tangential) +
                      " N/m: give 0 or a positive number");
 }
 

@@ -57,9 +57,11 @@ std::string percent(const char* what, double share, double checked) {
 
 std::vector<std::string> outside_range(const Means& means, double solid_fraction) {
   std::vector<std::string> outside;
-  if (solid_fraction < smallest_solid_fraction || solid_fraction > largest_solid_fraction)
-    outside.push_back("the solid fraction is " + std::to_string(solid_fraction) +
-                      " (compared from 0.0005 to 0.74)");
+  if (solid_fraction < smallest_solid_fraction || solid_fraction > largest_solid_fraction) {
+    char text[80];
+    std::snprintf(text, sizeof text, "the solid fraction is %.3g (compared from 0.0005 to 0.74)", solid_fraction);
+    outside.push_back(text);
+  }
   if (means.hidden > largest_hidden_share)
     outside.push_back(percent("overlaps hide, of the solid surface beside the flow (a mean over its dissipation),",
                               means.hidden, largest_hidden_share));

@@ -2,6 +2,7 @@
 #include "problem/box_changes.hpp"
 
 #include "pfv/error.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,7 @@ bool same_shape(const Container& a, const Container& b) {
 void require_time_step(double dt, bool commit) {
   const bool fits = std::isfinite(dt) && (commit ? dt > 0.0 : dt >= 0.0);
   if (!fits)
-    throw InputError("the time step is " + std::to_string(dt) + " s; it must be " +
+    throw InputError("the time step is " + detail::number_text(dt) + " s; it must be " +
                      (commit ? ">" : ">=") + " 0 and finite");
 }
 

@@ -6,6 +6,7 @@
 #include "pfv/error.hpp"
 #include "physics/pore_velocities.hpp"
 #include "physics/sphere_stresses.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +92,7 @@ double plane_flux(const BuiltNetwork& built, const Solution& solution, const Bal
                      "times the area: see the permeability tensor");
   const double relative = position - network.origin[axis], end = built.grains.spheres.edges[axis];
   if (!(relative >= 0.0 && relative <= end))
-    throw InputError("the plane at " + std::to_string(position) + " m is outside the box");
+    throw InputError("the plane at " + detail::number_text(position) + " m is outside the box");
   // a centre may lie outside the container, its pore does not
   const auto beyond = [&](int pore) {
     return relative <= 0.0 || (relative < end && network.pore_centres(axis, pore) > relative) ? 1.0 : 0.0;
@@ -145,8 +146,8 @@ SliceMeans slice_means(const BuiltNetwork& built, const Solution& solution, cons
   }
   add_up(means, built.share);
   if (means.pores == 0)
-    throw InputError("no pore has its centre between " + std::to_string(lower) + " and " +
-                     std::to_string(upper) + " m");
+    throw InputError("no pore has its centre between " + detail::number_text(lower) + " and " +
+                     detail::number_text(upper) + " m");
   means.pressure /= means.volume;
   means.velocity /= means.volume;
   return means;
@@ -192,7 +193,7 @@ double plane_pressure(BuiltNetwork& built, const Solution& solution, int axis, d
   double sum = 0.0;
   int count = 0;
   for (int c = 0; c < built.network.cells(); ++c) {
-    if (extents->low[c] > relative || relative > extents->high[c]) continue;
+    if (!(extents->low[c] <= relative && relative <= extents->high[c])) continue;
     const int pore = built.network.cell_pore[c];
     if (counted[pore] || !built.share.owns_pore(pore)) continue;
     counted[pore] = 1;
@@ -203,7 +204,7 @@ double plane_pressure(BuiltNetwork& built, const Solution& solution, int axis, d
   sums << sum, count;
   built.share.add(sums);
   if (sums[1] == 0.0)
-    throw InputError("the plane at " + std::to_string(position) + " m cuts no pore");
+    throw InputError("the plane at " + detail::number_text(position) + " m cuts no pore");
   return sums[0] / sums[1];
 }
 

@@ -85,6 +85,11 @@ void NetworkKeeper::discard(bool by_host) {
 }
 
 void NetworkKeeper::restore(double strain, std::int64_t rebuilds) {
+  discard(false);
+  built_.reset();
+  next_.reset();
+  former_grains_.reset();
+  had_network_ = false;
   strain_.restore(strain);
   rebuilds_ = rebuilds;
 }

@@ -67,6 +67,7 @@ class NetworkKeeper {
   void discard(bool by_host);
   /// Takes in the strain of a step.
   void strain(const Solution& solution) { strain_.add(*built_, solution); }
+  /// As after so many networks, the last of which the next update builds.
   void restore(double strain, std::int64_t rebuilds);
 
   bool has_network() const { return built_ != nullptr; }
