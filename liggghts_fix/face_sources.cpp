@@ -2,6 +2,7 @@
 #include "face_sources.h"
 
 #include "private_member.h"
+#include "wall_places.h"
 #include "wall_shapes.h"
 
 #include "pfv/error.hpp"
@@ -100,6 +101,7 @@ int PfvFaceSources::axis_of(int number) const {
 void PfvFaceSources::bind(const PfvSettings& settings) {
   const std::vector<Eigen::Vector3d> before = outward_normals();
   container_ = settings.container;
+  periodic_ = settings.box.periodic;
   sources_ = settings.sources;
   names_.clear();
   for (int number = 0; number < count(); ++number) names_.push_back(face_name(settings, number));
@@ -120,7 +122,8 @@ void PfvFaceSources::bind(const PfvSettings& settings) {
     if (source.kind == Source::wall) bind_wall(source, number);
     if (source.kind == Source::mesh) bind_mesh(source, number);
     // the words tell which way these look, the rest of the mesh which way its parts do
-    if (container_ && (source.kind == Source::plane || source.kind == Source::extent || source.part >= 0))
+    if (container_ && (source.kind == Source::plane || source.kind == Source::extent ||
+                       source.kind == Source::periodic || source.part >= 0))
       outwards_[number] = 1.0;
   }
 }
@@ -193,7 +196,22 @@ pfv::Surface PfvFaceSources::surface(int number) const {
   const pfv::Surface& surface = shapes_[number].surface;
   const Eigen::Vector3d middle(0.5 * (domain->boxlo[0] + domain->boxhi[0]), 0.5 * (domain->boxlo[1] + domain->boxhi[1]),
                                0.5 * (domain->boxlo[2] + domain->boxhi[2]));
-  return (outwards_[number] != 0.0 ? outwards_[number] : way_out(number, middle)) < 0.0 ? turned(surface) : surface;
+  return along_periods((outwards_[number] != 0.0 ? outwards_[number] : way_out(number, middle)) < 0.0 ? turned(surface)
+                                                                                                      : surface);
+}
+
+/// A mesh is parallel to a periodic axis but for rounding.
+pfv::Surface PfvFaceSources::along_periods(pfv::Surface surface) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!periodic_[axis]) continue;
+    if (!surface.is_plane() && std::abs(surface.axis[axis]) > 1.0 - same) surface.axis = Eigen::Vector3d::Unit(axis);
+    if (!surface.is_plane() || std::abs(surface.normal[axis]) > same || surface.normal[axis] == 0.0) continue;
+    Eigen::Vector3d normal = surface.normal;
+    normal[axis] = 0.0;
+    const double middle = 0.5 * (domain->boxlo[axis] + domain->boxhi[axis]);
+    surface = pfv::Surface::plane(normal, (surface.offset - middle * surface.normal[axis]) / normal.squaredNorm() * normal);
+  }
+  return surface;
 }
 
 std::vector<Eigen::Vector3d> PfvFaceSources::outward_normals() const {
@@ -261,13 +279,21 @@ void PfvFaceSources::read() {
     else if (meshes_[number])
       read_mesh(number);
     else if (sources_[number].kind == Source::periodic)
-      positions_[number] = number % 2 == 1 ? domain->boxhi[number / 2] : domain->boxlo[number / 2];
+      read_end_of_period(number);
     if (meshes_[number]) settle_motion(number);
     if (!container_) continue;
     // any motion changes the distance from some place far off
     const Eigen::Vector3d far(1.7e3, -2.3e3, 3.1e3);
     positions_[number] = shapes_[number].surface.distance(far);
   }
+}
+
+/// Where the simulation box ends now.
+void PfvFaceSources::read_end_of_period(int number) {
+  const int axis = axis_of(number);
+  const bool upper = container_ ? shapes_[number].surface.normal[axis] > 0.0 : number % 2 == 1;
+  positions_[number] = (upper ? domain->boxhi : domain->boxlo)[axis];
+  if (container_) shapes_[number].surface.offset = (upper ? 1.0 : -1.0) * positions_[number];
 }
 
 /// All parts of a mesh move as it does.

@@ -12,6 +12,7 @@
 
 #include "pointers.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,8 @@ class PfvFaceSources : protected Pointers {
   void bind_mesh(const PfvFaceSource& source, int number);
   void bind_part(const PfvFaceSource& source, int number);
   void read_plane(int number);
+  void read_end_of_period(int number);
+  pfv::Surface along_periods(pfv::Surface surface) const;
   void read_parts();
   void read_motion_of_part(int number);
   void read_mesh(int number);
@@ -110,6 +113,7 @@ class PfvFaceSources : protected Pointers {
 
   PfvMeshMotions motions_;
   bool container_ = false;
+  std::array<bool, 3> periodic_{};
   std::vector<std::string> names_;
   std::vector<PfvFaceSource> sources_;
   std::vector<class FixMeshSurface*> meshes_;

@@ -176,6 +176,8 @@ const char* FixPfv::other_fluid() const {
 void FixPfv::check_cell() {
   if (cell_.axes() != settings_.box.periodic)
     stop(FLERR, "the periodic sides of the simulation box have changed since this fix was defined; define it anew");
+  if (settings_.container && cell_.changes())
+    stop(FLERR, "the period of a pipe does not change its length; take fix deform out, or walls that are faces of a box");
   const std::string obstacle = cell_.obstacle(adapts() ? 0 : settings_.steps.couple_every, others_.rigid_bodies);
   if (!obstacle.empty()) stop(FLERR, obstacle);
 }
@@ -310,7 +312,7 @@ void FixPfv::setup(int) {
   // fix deform changes the cell after the last flow step of a run: that is part of the next run's first interval
   // (an older restart file cannot tell whether a box that nothing changes has been changed by hand: it begins anew)
   const bool by_hand = since_.from_older_file && !cell_.changes() && since_.steps == 0;
-  const bool goes_on = !by_hand && (since_.steps > 0 || (cell_.any() && !since_.face_positions.empty()));
+  const bool goes_on = !by_hand && (since_.steps > 0 || (cell_.any() && !settings_.container && !since_.face_positions.empty()));
   since_.in_restart_file.reset();
   since_.from_older_file = false;
   if (!goes_on) since_.face_positions = faces_.positions();
@@ -354,7 +356,7 @@ void FixPfv::advance() {
   const int steps = since_.steps;
   since_.steps = 0;
   schedule_.count_solve();
-  if (cell_.any()) since_.cell_rates = cell_.rates_since(since_.face_positions, since_.time);
+  if (cell_.any() && !settings_.container) since_.cell_rates = cell_.rates_since(since_.face_positions, since_.time);
   read_host();
   pfv::Container now = current_container();
   const double thickened = change_of_viscosity();

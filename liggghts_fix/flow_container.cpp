@@ -76,6 +76,8 @@ pfv::Container FixPfv::current_container() {
   }
   pfv::Container container;
   container.faces = settings_.faces;
+  container.periodic = settings_.box.periodic;
+  container.pressure_gradient = settings_.box.pressure_gradient;
   container.regions = settings_.box.regions;
   container.patches = patches_of(settings_, container);
   for (int number = 0; number < container.face_count(); ++number) faces_.set_motion(number, container.faces[number]);
@@ -89,8 +91,9 @@ void FixPfv::move_cell(pfv::Container& container) const {
         settings_.box.periodic[number / 2] ? since_.cell_rates[number] : 0.0;
 }
 
-/// Lengths of the cell at the last flow step, m; 0 along axes that are not periodic.
+/// Lengths of the cell at the last flow step, m; 0 along axes that are not periodic. Those of a pipe do not change.
 Eigen::Vector3d FixPfv::cell_lengths_then() const {
+  if (settings_.container) return cell_.lengths();
   Eigen::Vector3d lengths = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis)
     if (settings_.box.periodic[axis]) lengths[axis] = since_.face_positions[2 * axis + 1] - since_.face_positions[2 * axis];
@@ -115,6 +118,8 @@ void FixPfv::place_faces(pfv::Container& container) {
       pfv::Container whole = closed_container(container.faces);
       whole.regions = container.regions;
       whole.patches = container.patches;
+      whole.periodic = container.periodic;
+      whole.pressure_gradient = container.pressure_gradient;
       container = std::move(whole);
     }
   } else {

@@ -2,6 +2,7 @@
 #include "found_walls.h"
 
 #include "script_units.h"
+#include "wall_places.h"
 #include "wall_shapes.h"
 
 #include "pfv/container.hpp"
@@ -29,8 +30,6 @@ using Source = PfvFaceSource::Kind;
 
 /// With more of the grains than this on its far side a wall stands among them.
 constexpr double among_grains = 0.01;
-/// Directions, places and volumes of walls that differ by less are the same: STL files carry some seven digits.
-constexpr double same = 1e-6;
 /// Grains whose middle is further from a cylinder's axis, as a part of its radius, fill it half or less: pores would
 /// reach around the axis.
 constexpr double aside = 0.4;
@@ -55,33 +54,6 @@ PfvFaceSource source_of(const PfvWall& wall) {
   return source;
 }
 
-/// `nothing`: a length that is round-off.
-bool same_plane(const pfv::Surface& a, const pfv::Surface& b, double nothing) {
-  if (!a.is_plane() || !b.is_plane()) return false;
-  const double way = a.normal.dot(b.normal) > 0.0 ? 1.0 : -1.0;
-  return (a.normal - way * b.normal).norm() < same && std::abs(a.offset - way * b.offset) < same * std::abs(a.offset) + nothing;
-}
-
-/// The plane with a place on its inner side.
-pfv::Surface facing(const pfv::Surface& surface, const Eigen::Vector3d& inside) {
-  if (!surface.is_plane() || surface.distance(inside) >= 0.0) return surface;
-  return pfv::Surface::plane(-surface.normal, surface.offset * surface.normal);
-}
-
-/// Whether a face's plane lies behind that of another face. Grains end before all walls, also those still to come.
-bool is_behind_another(std::size_t face, const pfv::Surface& plane, const PfvSettings& settings,
-                       const std::vector<std::vector<pfv::Surface>>& surfaces, const Eigen::Vector3d& middle) {
-  if (!plane.is_plane() || settings.sources[face].kind == Source::extent) return false;
-  const pfv::Surface far = facing(plane, middle);
-  for (std::size_t other = 0; other < surfaces.size(); ++other) {
-    if (other == face || surfaces[other].size() != 1 || !surfaces[other][0].is_plane()) continue;
-    const bool extreme = settings.sources[other].kind == Source::extent;
-    const pfv::Surface near = extreme ? surfaces[other][0] : facing(surfaces[other][0], middle);
-    if ((far.normal - near.normal).norm() < same && (extreme || far.distance(middle) > near.distance(middle))) return true;
-  }
-  return false;
-}
-
 bool any_cylinder(const std::vector<std::vector<pfv::Surface>>& of_faces) {
   return std::any_of(of_faces.begin(), of_faces.end(), [](const std::vector<pfv::Surface>& surfaces) {
     return std::any_of(surfaces.begin(), surfaces.end(), [](const pfv::Surface& surface) { return !surface.is_plane(); });
@@ -99,23 +71,6 @@ bool cylinders_fit(const std::vector<std::vector<pfv::Surface>>& of_faces) {
          std::all_of(surfaces.begin(), surfaces.end(), [&](const pfv::Surface& surface) {
            return !surface.is_plane() || std::abs(surface.normal.dot(found->axis)) > 1.0 - same;
          });
-}
-
-/// Of the container with these walls, each with the grains' middle on its inner side; nothing if it is open.
-std::optional<double> volume_within(const std::vector<std::vector<pfv::Surface>>& of_faces, const Eigen::Vector3d& middle) {
-  std::vector<pfv::ContainerFace> faces;
-  for (const auto& surfaces : of_faces)
-    for (const pfv::Surface& surface : surfaces) {
-      faces.emplace_back();
-      faces.back().name = std::to_string(faces.size());
-      faces.back().surface = facing(surface, middle);
-      faces.back().may_bound_nothing = true;
-    }
-  try {
-    return pfv::volume_of(pfv::container_of(faces));
-  } catch (const pfv::InputError&) {
-    return {};
-  }
 }
 
 /// The face becomes as many as these of its mesh's walls; a variable feeds them all.
@@ -140,41 +95,6 @@ void split(PfvSettings& settings, std::size_t number, const std::vector<std::siz
     settings.sources[at].parts = static_cast<int>(parts);
     settings.faces[at].may_bound_nothing = true;  // above a free surface, for instance
     if (parts > 1) settings.faces[at].name = face.name + "_" + std::to_string(part + 1);
-  }
-}
-
-/// Of a cell with periodic axes the face that a plane is: normal to another axis, with the fluid on its inner side.
-std::optional<std::size_t> face_of_cell(const std::vector<pfv::Surface>& surfaces, const PfvSettings& settings,
-                                        const Eigen::Vector3d& middle) {
-  if (surfaces.size() != 1 || !surfaces[0].is_plane()) return {};
-  const Eigen::Vector3d normal = facing(surfaces[0], middle).normal;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (!settings.box.periodic[axis] && std::abs(normal[static_cast<Eigen::Index>(axis)]) > 1.0 - same)
-      return 2 * axis + (normal[static_cast<Eigen::Index>(axis)] > 0.0 ? 1 : 0);
-  return {};
-}
-
-/// The faces of a box that the cell is, empty along its periodic axes.
-void become_box(PfvSettings& settings, const std::array<std::optional<std::size_t>, pfv::face_count>& chosen) {
-  const PfvSettings before = settings;
-  settings.container = false;
-  settings.faces.clear();
-  settings.sources.assign(pfv::face_count, {});
-  for (PfvBinding& binding : settings.bindings)
-    for (std::size_t face = 0; binding.of == PfvBinding::Of::face && face < chosen.size(); ++face)
-      if (chosen[face] == before.bindings[static_cast<std::size_t>(&binding - settings.bindings.data())].number)
-        binding.number = face;
-  for (std::size_t face = 0; face < chosen.size(); ++face) {
-    PfvFaceSource& source = settings.sources[face];
-    if (!chosen[face]) {
-      source.kind = Source::periodic;
-      continue;
-    }
-    source = before.sources[*chosen[face]];
-    const auto axis = static_cast<Eigen::Index>(face / 2);
-    if (source.kind == Source::plane) source.plane = source.surface.offset * source.surface.normal[axis];
-    settings.box.faces[face].wall = before.faces[*chosen[face]].wall;
-    settings.box.faces[face].boundary = before.faces[*chosen[face]].boundary;
   }
 }
 
@@ -367,6 +287,7 @@ void PfvFoundWalls::drop_walls_that_bound_nothing(PfvSettings& settings, std::ve
   const Eigen::Vector3d middle = middle_of_grains();
   const double nothing = units_of(update->unit_style)->of_length(1e-12);
   for (std::size_t f = settings.faces.size(); f-- > named;) {
+    if (settings.sources[f].kind == Source::periodic) continue;
     std::vector<Surfaces> others = surfaces;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(f));
     const bool behind = surfaces[f].size() == 1 && is_behind_another(f, surfaces[f][0], settings, surfaces, middle);
@@ -418,34 +339,6 @@ void PfvFoundWalls::split_walls(PfvSettings& settings, const std::vector<Surface
   }
 }
 
-/// The walls along the axes that are not periodic, which alone a periodic cell has: two planes along each.
-void PfvFoundWalls::make_cell(PfvSettings& settings, const std::vector<Surfaces>& surfaces, std::size_t named,
-                              std::vector<std::string>& left_out) const {
-  const Eigen::Vector3d middle = middle_of_grains();
-  std::array<std::optional<std::size_t>, pfv::face_count> chosen;
-  for (std::size_t f = 0; f < surfaces.size(); ++f) {
-    const std::string what = "face " + settings.faces[f].name;
-    const std::optional<std::size_t> face = face_of_cell(surfaces[f], settings, middle);
-    if (!face && f < named)
-      throw pfv::InputError(what + ": the simulation box is periodic, and such a cell has plane walls normal to its other "
-                            "axes alone; take it out, or use `boundary f f f`");
-    if (!face) left_out.push_back(what + " is no plane normal to an axis that is not periodic");
-    if (!face) continue;
-    if (is_behind_another(f, surfaces[f][0], settings, surfaces, middle)) {
-      left_out.push_back("wall '" + settings.faces[f].name + "' bounds nothing, since others keep the fluid from it");
-      continue;
-    }
-    if (chosen[*face] && f < named)
-      throw pfv::InputError(what + " and face " + settings.faces[*chosen[*face]].name + " are on one side; take one out");
-    if (!chosen[*face]) chosen[*face] = f;
-  }
-  for (const pfv::Face face : pfv::all_faces)
-    if (const auto number = static_cast<std::size_t>(face); !settings.box.periodic[number / 2] && !chosen[number])
-      throw pfv::InputError(std::string("container walls: no wall bounds the periodic cell on its side ") + pfv::name_of(face) +
-                            "; give it a face there: `face NAME plane X Y Z NX NY NZ` or `face NAME extent AXIS lo` or `hi`");
-  become_box(settings, chosen);
-}
-
 std::vector<std::string> PfvFoundWalls::complete(PfvSettings& settings) const {
   std::vector<std::string> left_out;
   if (!settings.container) return left_out;
@@ -453,12 +346,17 @@ std::vector<std::string> PfvFoundWalls::complete(PfvSettings& settings) const {
   if (settings.all_walls) add_walls(settings, left_out);
   const auto round = settings.flats ? pfv::RoundMeshes::as_flats : pfv::RoundMeshes::as_cylinders;
   std::vector<Surfaces> surfaces = surfaces_of_faces(settings, round);
-  if (settings.box.any_periodic()) {
+  const bool periodic = settings.box.any_periodic();
+  if (periodic) leave_out_walls_across(settings, surfaces, named, left_out);
+  const bool pipe = periodic && !is_cell(settings, surfaces);
+  if (pipe) add_periods(settings, surfaces);
+  if (settings.all_walls && periodic == pipe) drop_walls_that_bound_nothing(settings, surfaces, named, left_out);
+  if (periodic && is_cell(settings, surfaces)) {
+    remove_periods(settings, surfaces);
     make_cell(settings, surfaces, named, left_out);
     check_patches(settings);
     return left_out;
   }
-  if (settings.all_walls) drop_walls_that_bound_nothing(settings, surfaces, named, left_out);
   if (!cylinders_fit(surfaces) || grains_lie_aside(surfaces)) surfaces = surfaces_of_faces(settings, pfv::RoundMeshes::as_flats);
   split_walls(settings, surfaces, left_out);
   check_patches(settings);

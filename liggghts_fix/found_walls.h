@@ -45,6 +45,11 @@ class PfvFoundWalls : protected Pointers {
                                       std::vector<std::string>& left_out) const;
   void make_cell(PfvSettings& settings, const std::vector<Surfaces>& surfaces, std::size_t named,
                  std::vector<std::string>& left_out) const;
+  void leave_out_walls_across(PfvSettings& settings, std::vector<Surfaces>& surfaces, std::size_t named,
+                              std::vector<std::string>& left_out) const;
+  bool is_cell(const PfvSettings& settings, const std::vector<Surfaces>& surfaces) const;
+  void add_periods(PfvSettings& settings, std::vector<Surfaces>& surfaces) const;
+  void remove_periods(PfvSettings& settings, std::vector<Surfaces>& surfaces) const;
   std::vector<Surfaces> surfaces_of_faces(PfvSettings& settings, pfv::RoundMeshes round) const;
   Surfaces surfaces_of(const PfvFaceSource& source, const std::string& face) const;
   std::string reason_to_leave_out(const PfvWall& wall) const;

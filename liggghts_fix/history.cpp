@@ -48,9 +48,15 @@ std::optional<double> position_of(const pfv::Container& container, int face) {
   return surface.is_plane() ? std::optional(surface.offset) : std::nullopt;
 }
 
+bool is_end_of_period(const pfv::Container& container, const pfv::Surface& surface) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (container.periodic[axis] && surface.is_plane() && std::abs(surface.normal[axis]) == 1.0) return true;
+  return false;
+}
+
 void add_face(PfvNamedRow& row, const pfv::Container& container, int number, const pfv::FaceResult& face) {
   if (const auto position = position_of(container, number)) add(row, face.name + "_position", *position);
-  if (container.is_box && container.periodic[number / 2]) return;  // nothing pushes on it
+  if (is_end_of_period(container, container.faces[number].surface)) return;  // nothing pushes on it
   add(row, face.name + "_flux", face.flux);
   add_vector(row, face.name + "_force", face.force_pressure + face.force_viscous);
 }

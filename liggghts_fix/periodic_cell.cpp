@@ -25,6 +25,14 @@ std::array<bool, 3> PfvPeriodicCell::axes() const {
 
 bool PfvPeriodicCell::any() const { return domain->xperiodic || domain->yperiodic || domain->zperiodic; }
 
+Eigen::Vector3d PfvPeriodicCell::lengths() const {
+  const auto periodic = axes();
+  Eigen::Vector3d lengths = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (periodic[axis]) lengths[axis] = domain->prd[axis];
+  return lengths;
+}
+
 double PfvPeriodicCell::position(int face) const {
   return face % 2 == 1 ? domain->boxhi[face / 2] : domain->boxlo[face / 2];
 }

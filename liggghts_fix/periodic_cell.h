@@ -26,6 +26,9 @@ class PfvPeriodicCell : protected Pointers {
  public:
   explicit PfvPeriodicCell(class LAMMPS* lmp) : Pointers(lmp) {}
 
+  /// m, along periodic axes; 0 along the others.
+  Eigen::Vector3d lengths() const;
+
   /// Which axes are periodic.
   std::array<bool, 3> axes() const;
   bool any() const;

@@ -69,7 +69,11 @@ Deepest deepest_in(const pfv::Container& container, const std::vector<pfv::Trian
 }
 
 std::string remedy(const pfv::Container& container, const PfvUnseenWall& wall) {
-  if (container.any_periodic()) return "; a periodic cell has plane walls normal to its other axes alone";
+  if (container.any_periodic() && !wall.surface.empty())
+    return "; beside periodic sides walls are parallel to them, and there are no obstacles";
+  if (container.any_periodic())
+    return "; beside periodic sides there are no obstacles, and walls that bound the fluid are parallel to those sides "
+           "(`container walls`)";
   const std::string obstacle = wall.surface.empty() ? "`obstacle mesh " + wall.id + "` makes it a body among the grains" : "";
   if (!container.is_box && !wall.surface.empty() && !wall.surface[0].is_plane())
     return "; if it stands among the grains, take a mesh of its shape in its place, and `obstacle mesh ID`";
