@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <vector>
 
 namespace permeability_error_test {
 namespace {
@@ -48,6 +49,28 @@ TEST(PermeabilityError, AddsTheDifferenceOfAnotherLaw) {
   EXPECT_GT(bias, 0.5);
   EXPECT_NEAR(std::log1p(*other.permeability_error),
               std::log1p(*open.permeability_error) + 1.05 * bias, 1e-9);
+}
+
+// A cell repeated twice has the same throats twice as often: the part that averages falls by half in the square.
+TEST(PermeabilityError, AveragesOverThroatsThatErrOnTheirOwn) {
+  std::vector<double> squares;
+  for (const int copies : {1, 2, 4}) {
+    const pfv::PackingArrays one = scaled(data_packing("bed_periodic_40.csv"), 0.8);
+    const Eigen::Index count = one.radii.size();
+    pfv::PackingArrays packing;
+    packing.ids = pfv::Packing::Ids::LinSpaced(copies * count, 1, copies * count);
+    packing.positions.resize(3, copies * count);
+    packing.radii = one.radii.replicate(copies, 1);
+    for (int copy = 0; copy < copies; ++copy)
+      packing.positions.middleCols(copy * count, count) = one.positions.colwise() + copy * Eigen::Vector3d::UnitX();
+    pfv::Box box;
+    box.upper = {static_cast<double>(copies), 1.0, 1.0};
+    box.periodic = {true, true, true};
+    box.pressure_gradient = {0.0, 0.0, -1.0};
+    squares.push_back(std::pow(std::log1p(*report_of(packing, box).permeability_error), 2));
+  }
+  EXPECT_GT(squares[0], 1.01 * squares[1]);
+  EXPECT_NEAR((squares[0] - squares[1]) / (squares[1] - squares[2]), 2.0, 1e-6);
 }
 
 TEST(PermeabilityError, DoesNotDependOnViscosityOrPressure) {

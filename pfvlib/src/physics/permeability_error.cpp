@@ -16,6 +16,7 @@ constexpr double blend_error = 0.06;
 constexpr double wall_error = 0.05;
 constexpr double hidden_error = 0.8;
 constexpr double rule_error = 0.5;
+constexpr double sampling_error = 1.7;
 constexpr double first_order_error = 0.05;  // of ln K, by what d ln K leaves out of a large change
 
 // What the anchors span.
@@ -29,8 +30,17 @@ constexpr double notable_degenerate = 0.01, notable_ratio = 0.05;
 
 /// Means over the throats, weighted with their dissipation.
 struct Means {
-  double error = 0.0, bias = 0.0, degenerate = 0.0, hidden = 0.0, walls = 0.0, unlike = 0.0;
+  double error = 0.0, bias = 0.0, degenerate = 0.0, hidden = 0.0, walls = 0.0, unlike = 0.0, drag = 0.0;
+  double square = 0.0;               ///< of the weights themselves
+  double shape = 0.0, shape2 = 0.0;  ///< of ln(mu g / S²), and of its square
 };
+
+/// What throats err by on their own where spheres are apart, over as few as the flow takes. None in a lattice, whose
+/// throats are alike.
+double scatter(const Means& means) {
+  const double spread = std::sqrt(std::max(0.0, means.shape2 - means.shape * means.shape));
+  return sampling_error * means.drag * spread * std::sqrt(means.square);
+}
 
 double throat_error(const OpenThroat& throat) {
   return base_error + blend_error * throat.drag_share * (1.0 - throat.drag_share) +
@@ -46,6 +56,14 @@ double size_ratio(const PoreNetwork& network, const Spheres& spheres, int t) {
         if (!is_wall(a) && !is_wall(b))
           ratio = std::max(ratio, spheres.radii[a] / spheres.radii[b]);
   return ratio;
+}
+
+Means over(Means sums, double total) {
+  for (double* part : {&sums.error, &sums.bias, &sums.degenerate, &sums.hidden, &sums.walls, &sums.unlike, &sums.drag, &sums.shape,
+                       &sums.shape2})
+    *part /= total;
+  sums.square /= total * total;
+  return sums;
 }
 
 std::string percent(const char* what, double share, double checked) {
@@ -98,22 +116,27 @@ PermeabilityError permeability_error(const PoreNetwork& network, const Throats& 
     if (law != ConductanceLaw::open_throat && throat.value > 0.0)
       sums.bias += weight * std::log(conductances.value[t] * viscosity * throats.length[t] /
                                      throat.value);
+    if (throat.value > 0.0 && throats.area[t] > 0.0) {
+      const double shape = std::log(throat.value / (throats.area[t] * throats.area[t]));
+      sums.shape += weight * shape;
+      sums.shape2 += weight * shape * shape;
+    }
+    sums.drag += weight * throat.drag_share;
+    sums.square += weight * weight;
     sums.hidden += weight * throat.hidden_share;
     sums.walls += weight * throat.wall_share;
     if (size_ratio(network, spheres, t) > largest_size_ratio * (1.0 + 1e-9)) sums.unlike += weight;
   }
   if (share.ranks)
-    for (double* part : {&sums.error, &sums.bias, &sums.degenerate, &sums.hidden, &sums.walls, &sums.unlike, &total})
+    for (double* part : {&sums.error, &sums.bias, &sums.degenerate, &sums.hidden, &sums.walls, &sums.unlike, &sums.drag, &sums.square,
+                         &sums.shape, &sums.shape2, &total})
       *part = share.sum(*part);
   if (!(total > 0.0)) return {};
+  const Means means = over(sums, total);
   PermeabilityError result;
-  result.relative =
-      std::expm1((sums.error + (1.0 + first_order_error) * std::abs(sums.bias)) / total);
-  result.degenerate_share = sums.degenerate / total;
-  result.outside_range = outside_range({sums.error / total, sums.bias / total,
-                                        sums.degenerate / total, sums.hidden / total,
-                                        sums.walls / total, sums.unlike / total},
-                                       solid_fraction);
+  result.relative = std::expm1(std::hypot(means.error, scatter(means)) + (1.0 + first_order_error) * std::abs(means.bias));
+  result.degenerate_share = means.degenerate;
+  result.outside_range = outside_range(means, solid_fraction);
   return result;
 }
 

@@ -27,7 +27,12 @@ struct PermeabilityError {
 ///   sigma_t = 0.055 + 0.06 x (1 - x) + 0.05 (wall share) + 0.8 (hidden share),
 /// x the drag's share of the resistance (the blend of two limits is the least certain half-way),
 /// 0.5 where a rule or the bound sets g. Another law adds 1.05 |sum_t w_t ln(g_t / g_t of the
-/// open-throat law)|, 0.05 for what a first-order sum leaves out. 0.055 to 0.8 were calibrated on
+/// open-throat law)|, 0.05 for what a first-order sum leaves out.
+///
+/// What throats of spheres that are apart err by on their own averages, over few of them only in part:
+///   1.7 (mean x) (standard deviation of ln(mu g / S²)) (sum_t w_t²)^(1/2)
+/// is added to the first sum in quadrature; it is 0 in a lattice, and 1.7 was calibrated on beds of 8 to 45 spheres at
+/// random in no-slip boxes and cylinders beside a lattice-Boltzmann method (doc/container.md). 0.055 to 0.8 were calibrated on
 /// lattices, random beds, the nine-sphere cell and small packings of doc/accuracy.md, which says
 /// how often the estimate holds there and on packings made later.
 ///
