@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "face_sources.h"
 
+#include "periodic_cell.h"
 #include "private_member.h"
 #include "wall_places.h"
 #include "wall_shapes.h"
@@ -18,6 +19,7 @@
 #include <Eigen/Geometry>
 #include <mpi.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -101,7 +103,6 @@ int PfvFaceSources::axis_of(int number) const {
 void PfvFaceSources::bind(const PfvSettings& settings) {
   const std::vector<Eigen::Vector3d> before = outward_normals();
   container_ = settings.container;
-  periodic_ = settings.box.periodic;
   sources_ = settings.sources;
   names_.clear();
   for (int number = 0; number < count(); ++number) names_.push_back(face_name(settings, number));
@@ -202,8 +203,9 @@ pfv::Surface PfvFaceSources::surface(int number) const {
 
 /// A mesh is parallel to a periodic axis but for rounding.
 pfv::Surface PfvFaceSources::along_periods(pfv::Surface surface) const {
+  const std::array<bool, 3> periodic = PfvPeriodicCell(lmp).axes();
   for (int axis = 0; axis < 3; ++axis) {
-    if (!periodic_[axis]) continue;
+    if (!periodic[axis]) continue;
     if (!surface.is_plane() && std::abs(surface.axis[axis]) > 1.0 - same) surface.axis = Eigen::Vector3d::Unit(axis);
     if (!surface.is_plane() || std::abs(surface.normal[axis]) > same || surface.normal[axis] == 0.0) continue;
     Eigen::Vector3d normal = surface.normal;

@@ -12,7 +12,6 @@
 
 #include "pointers.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -113,7 +112,6 @@ class PfvFaceSources : protected Pointers {
 
   PfvMeshMotions motions_;
   bool container_ = false;
-  std::array<bool, 3> periodic_{};
   std::vector<std::string> names_;
   std::vector<PfvFaceSource> sources_;
   std::vector<class FixMeshSurface*> meshes_;

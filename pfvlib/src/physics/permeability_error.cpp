@@ -4,6 +4,7 @@
 #include "physics/open_throat.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -58,12 +59,23 @@ double size_ratio(const PoreNetwork& network, const Spheres& spheres, int t) {
   return ratio;
 }
 
-Means over(Means sums, double total) {
-  for (double* part : {&sums.error, &sums.bias, &sums.degenerate, &sums.hidden, &sums.walls, &sums.unlike, &sums.drag, &sums.shape,
-                       &sums.shape2})
-    *part /= total;
+/// All but `square`, which goes with the square of the weights.
+std::array<double*, 9> sums_of_weights(Means& sums) {
+  return {&sums.error, &sums.bias, &sums.degenerate, &sums.hidden, &sums.walls, &sums.unlike, &sums.drag, &sums.shape, &sums.shape2};
+}
+
+/// Sums with the weights of all ranks -> means.
+Means means_of(Means sums, double total) {
+  for (double* part : sums_of_weights(sums)) *part /= total;
   sums.square /= total * total;
   return sums;
+}
+
+void add_shape(Means& sums, double weight, double conductance, double area) {
+  if (!(conductance > 0.0 && area > 0.0)) return;
+  const double shape = std::log(conductance / (area * area));
+  sums.shape += weight * shape;
+  sums.shape2 += weight * shape * shape;
 }
 
 std::string percent(const char* what, double share, double checked) {
@@ -116,23 +128,17 @@ PermeabilityError permeability_error(const PoreNetwork& network, const Throats& 
     if (law != ConductanceLaw::open_throat && throat.value > 0.0)
       sums.bias += weight * std::log(conductances.value[t] * viscosity * throats.length[t] /
                                      throat.value);
-    if (throat.value > 0.0 && throats.area[t] > 0.0) {
-      const double shape = std::log(throat.value / (throats.area[t] * throats.area[t]));
-      sums.shape += weight * shape;
-      sums.shape2 += weight * shape * shape;
-    }
+    add_shape(sums, weight, throat.value, throats.area[t]);
     sums.drag += weight * throat.drag_share;
     sums.square += weight * weight;
     sums.hidden += weight * throat.hidden_share;
     sums.walls += weight * throat.wall_share;
     if (size_ratio(network, spheres, t) > largest_size_ratio * (1.0 + 1e-9)) sums.unlike += weight;
   }
-  if (share.ranks)
-    for (double* part : {&sums.error, &sums.bias, &sums.degenerate, &sums.hidden, &sums.walls, &sums.unlike, &sums.drag, &sums.square,
-                         &sums.shape, &sums.shape2, &total})
-      *part = share.sum(*part);
+  for (double* part : sums_of_weights(sums)) *part = share.sum(*part);
+  for (double* part : {&sums.square, &total}) *part = share.sum(*part);
   if (!(total > 0.0)) return {};
-  const Means means = over(sums, total);
+  const Means means = means_of(sums, total);
   PermeabilityError result;
   result.relative = std::expm1(std::hypot(means.error, scatter(means)) + (1.0 + first_order_error) * std::abs(means.bias));
   result.degenerate_share = means.degenerate;
