@@ -12,9 +12,7 @@
 #include "multisphere.h"
 #include "update.h"
 
-#include <mpi.h>
 #include <algorithm>
-#include <numeric>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -34,7 +32,7 @@ PFV_PRIVATE_MEMBER(PfvRigidTurns, double**, FixRigid, tflag)
 namespace {
 
 constexpr int body_width = 26;    // fix, number, spheres, mass, centre, inertia, three axes, moves, turns, weighed
-constexpr int member_width = 14;  // tag, fix, body, in flow, free, place, force, torque
+constexpr int member_width = 16;  // tag, fix, body, in flow, free, home, radius, place, force, torque
 
 /// `nointegration` leaves the motion to something else, which no force of the fluid changes.
 bool integrates(const Fix& bodies) {
@@ -112,9 +110,11 @@ PfvMember member_of(const double* row) {
           {static_cast<int>(row[1]), static_cast<int>(row[2])},
           row[3] != 0.0,
           row[4] != 0.0,
-          Three(row + 5),
-          Three(row + 8),
-          Three(row + 11)};
+          static_cast<int>(row[5]),
+          row[6],
+          Three(row + 7),
+          Three(row + 10),
+          Three(row + 13)};
 }
 
 }  // namespace
@@ -127,14 +127,14 @@ std::vector<Fix*> PfvBodySources::fixes() const {
   return found;
 }
 
-std::vector<double> PfvBodySources::on_root(const std::vector<double>& mine) const {
-  const int count = static_cast<int>(mine.size());
-  std::vector<int> counts(comm->nprocs), offsets(comm->nprocs);
-  MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
-  std::exclusive_scan(counts.begin(), counts.end(), offsets.begin(), 0);
-  std::vector<double> all(comm->me == 0 ? offsets.back() + counts.back() : 0);
-  MPI_Gatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, 0, world);
-  return all;
+/// Rows whose columns `key` and `key` + 1 name a body, on the rank that looks at it.
+std::vector<double> PfvBodySources::where_looked_at(const std::vector<double>& mine, int width, int key, bool by_all) const {
+  std::vector<int> lookers;
+  for (std::size_t row = 0; row < mine.size(); row += width)
+    lookers.push_back(by_all ? static_cast<int>(mine[row + key] + mine[row + key + 1]) % comm->nprocs : 0);
+  PfvRankRows rows(lmp);
+  rows.set_homes(std::move(lookers));
+  return rows.to_homes(mine, width);
 }
 
 /// Those of this rank. A fix rigid has all its bodies on each.
@@ -145,7 +145,8 @@ void PfvBodySources::pack_bodies(int number, Fix& fix, std::vector<double>& rows
     pack_rigid(number, dynamic_cast<FixRigid&>(fix), rows);
 }
 
-void PfvBodySources::pack_members(int number, Fix& fix, const PfvGroups& groups, std::vector<double>& rows) const {
+void PfvBodySources::pack_members(int number, Fix& fix, const PfvGroups& groups, const PfvHomes& homes,
+                                  std::vector<double>& rows) const {
   const auto* const multisphere = dynamic_cast<FixMultisphere*>(&fix);
   const int* const of_rigid = multisphere ? nullptr : dynamic_cast<FixRigid&>(fix).*member(PfvRigidBodyOf());
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -153,22 +154,24 @@ void PfvBodySources::pack_members(int number, Fix& fix, const PfvGroups& groups,
     if (body < 0) continue;
     const int mask = atom->mask[i];
     rows.insert(rows.end(), {static_cast<double>(atom->tag[i]), static_cast<double>(number), static_cast<double>(body),
-                             mask & groups.flow ? 1.0 : 0.0, mask & groups.held ? 0.0 : 1.0});
+                             mask & groups.flow ? 1.0 : 0.0, mask & groups.held ? 0.0 : 1.0,
+                             static_cast<double>(homes.is_known(i) ? homes.of(i) : comm->me), atom->radius[i]});
     add_three(rows, atom->x[i]);
     add_three(rows, atom->f[i]);
     add_three(rows, atom->torque[i]);
   }
 }
 
-PfvBodyList PfvBodySources::gather(const PfvGroups& groups) const {
+PfvBodyList PfvBodySources::gather(const PfvGroups& groups, const PfvHomes& homes) const {
   std::vector<double> of_bodies, of_members;
   const std::vector<Fix*> all = fixes();
   for (int number = 0; number < static_cast<int>(all.size()); ++number) {
     pack_bodies(number, *all[number], of_bodies);
-    pack_members(number, *all[number], groups, of_members);
+    pack_members(number, *all[number], groups, homes, of_members);
   }
-  of_bodies = on_root(of_bodies);
-  of_members = on_root(of_members);
+  const bool by_all = homes.per_atom != nullptr;
+  of_bodies = where_looked_at(of_bodies, body_width, 0, by_all);
+  of_members = where_looked_at(of_members, member_width, 1, by_all);
   PfvBodyList list;
   std::map<PfvBodyKey, PfvBody> known;
   for (std::size_t row = 0; row < of_bodies.size(); row += body_width) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rigid bodies of fix multisphere and fix rigid, as they are on all ranks, on rank 0.
+// The rigid bodies of fix multisphere and fix rigid, from all ranks where they are looked at.
 #ifndef LMP_PFV_BODY_SOURCES_H
 #define LMP_PFV_BODY_SOURCES_H
 
+#include "grain_exchange.h"
 #include "other_fixes.h"
 
 #include "pointers.h"
@@ -32,7 +33,9 @@ struct PfvMember {
   std::int64_t tag;
   PfvBodyKey body;
   bool in_flow, free;  ///< of the flow's grains; whether the fluid's force on it reaches its body
-  Eigen::Vector3d place, force, torque;  ///< known of those that are not in the flow
+  int home;       ///< the rank that has it in the flow
+  double radius;  ///< m
+  Eigen::Vector3d place, force, torque;
 };
 
 struct PfvBodyList {
@@ -45,14 +48,15 @@ class PfvBodySources : protected Pointers {
   explicit PfvBodySources(class LAMMPS* lmp) : Pointers(lmp) {}
 
   bool any() const { return !fixes().empty(); }
-  /// Bodies that have a sphere in the flow, and all their spheres; empty but on rank 0. Collective.
-  PfvBodyList gather(const PfvGroups& groups) const;
+  /// Bodies that have a sphere in the flow, and all their spheres, on the rank that looks at each: rank 0 or, where
+  /// all hold the flow, one of these. Collective.
+  PfvBodyList gather(const PfvGroups& groups, const PfvHomes& homes) const;
 
  private:
   std::vector<class Fix*> fixes() const;
-  std::vector<double> on_root(const std::vector<double>& mine) const;
+  std::vector<double> where_looked_at(const std::vector<double>& mine, int width, int key, bool by_all) const;
   void pack_bodies(int number, Fix& fix, std::vector<double>& rows) const;
-  void pack_members(int number, Fix& fix, const PfvGroups& groups, std::vector<double>& rows) const;
+  void pack_members(int number, Fix& fix, const PfvGroups& groups, const PfvHomes& homes, std::vector<double>& rows) const;
 };
 
 }  // namespace LAMMPS_NS

@@ -214,12 +214,12 @@ void FixPfv::check_other_fixes() {
 /// Collects the grains and the places of the faces; collective.
 void FixPfv::read_host() {
   grains_.gather(others_.groups, needs_forces(), cell_.streaming(since_.cell_rates), homes());
-  deal_where_due();
-  bodies_.apply(others_.groups, settings_.fluid.gravity, grains_);
   everywhere([&] {
     faces_.read();
     obstacles_.read();
   });
+  deal_where_due();
+  bodies_.apply(others_.groups, settings_.fluid.gravity, homes(), ranks_, grains_);
   faces_.read_pistons(needs_forces());
 }
 
@@ -393,7 +393,7 @@ void FixPfv::after_flow_call() {
   const Eigen::MatrixXd stresses = stresses_where_due();
   on_flow([&] {
     flow_.forget_results();
-    obstacles_.take_loads(grains_, flow_->forces());
+    obstacles_.take_loads(grains_, flow_->forces(), ranks_);
     files_->write(*flow_, {grains_.packing(), grains_.unwrapped(), stresses}, update->ntimestep, ranks_);
     if (files_->history_due(update->ntimestep))
       files_->write_history(history_row(*flow_, flow_.report(), of_grains(), update->ntimestep, schedule_.taken()));

@@ -125,6 +125,8 @@ class FixPfv : public Fix {
   PfvHomes homes() const;
   void deal_where_due();
   void deal_anew();
+  Eigen::Matrix3Xd spheres_to_deal() const;
+  void deal_obstacles(const std::vector<int>& parts);
   double spread() const;
 
   // when to solve the flow

@@ -234,7 +234,7 @@ std::int64_t FixPfv::hidden_or_outside() const {
   std::int64_t count = 0;
   for (Eigen::Index k = 0; k < packing.size(); ++k)
     count += !is_inside(container_, packing.positions.col(k)) || std::find(hidden.begin(), hidden.end(), k) != hidden.end();
-  return count;
+  return static_cast<std::int64_t>(ranks_.sum(static_cast<double>(count)));
 }
 
 /// Of the grains with their centre in it, m3, over all ranks. Along periodic axes all of them are.

@@ -48,6 +48,18 @@ std::vector<double> PfvFlowRanks::gathered(const std::vector<double>& own) const
   return all;
 }
 
+std::vector<double> PfvFlowRanks::everywhere(const std::vector<double>& own) const {
+  if (!are_all()) return own;
+  int ranks = 0, count = static_cast<int>(own.size());
+  MPI_Comm_size(world_, &ranks);
+  std::vector<int> counts(ranks), offsets(ranks);
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world_);
+  std::exclusive_scan(counts.begin(), counts.end(), offsets.begin(), 0);
+  std::vector<double> all(offsets.back() + counts.back());
+  MPI_Allgatherv(own.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, world_);
+  return all;
+}
+
 PfvGrainTotals totals_of(const pfv::Packing& packing, const PfvFlowRanks& ranks) {
   PfvGrainTotals totals;
   const auto& centres = packing.positions;

@@ -46,7 +46,9 @@ class PfvFlowRanks {
   bool any(bool value) const;
   /// Modulo 2^64.
   std::uint64_t sum(std::uint64_t value) const;
-  /// What all have, one after the other, on rank 0.
+  /// What all have, one after the other.
+  std::vector<double> everywhere(const std::vector<double>& own) const;
+  /// The same on rank 0.
   std::vector<double> gathered(const std::vector<double>& own) const;
 
  private:

@@ -38,14 +38,17 @@ void PfvGrainExchange::gather(const PfvGroups& groups, bool with_forces, const P
   unpack();
 }
 
-void PfvGrainExchange::deal(const PfvHomes& homes, const pfv::Ranks& ranks) {
-  const std::vector<int> parts = pfv::parts_by_place(grains_.positions, ranks);
-  Eigen::MatrixXd values(1, static_cast<Eigen::Index>(parts.size()));
-  for (std::size_t k = 0; k < parts.size(); ++k) values(0, static_cast<Eigen::Index>(k)) = 1.0 + parts[k];
+std::vector<int> PfvGrainExchange::deal(const PfvHomes& homes, const pfv::Ranks& ranks, const Eigen::Matrix3Xd& others) {
+  Eigen::Matrix3Xd places(3, grain_count() + others.cols());
+  places << grains_.positions.leftCols(grain_count()), others;
+  const std::vector<int> parts = pfv::parts_by_place(places, ranks);
+  Eigen::MatrixXd values(1, grain_count());
+  for (Eigen::Index k = 0; k < values.cols(); ++k) values(0, k) = 1.0 + parts[k];
   const std::vector<double> mine = at_atoms(values);
   std::size_t next = 0;
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit_) homes.per_atom[i][homes.column] = mine[next++];
+  return {parts.begin() + grain_count(), parts.end()};
 }
 
 std::vector<double> PfvGrainExchange::at_atoms(const Eigen::MatrixXd& at_homes) const {
@@ -143,9 +146,9 @@ void PfvGrainExchange::unpack() {
   }
 }
 
-void PfvGrainExchange::add(const pfv::Obstacle& obstacle, const pfv::ObstacleMotion& motion, std::int64_t first_id,
-                           const pfv::Container& container) {
-  pfv::add_obstacle(grains_, obstacle, motion, first_id, container);
+void PfvGrainExchange::add(const pfv::Obstacle& obstacle, const pfv::ObstaclePart& part, const pfv::ObstacleMotion& motion,
+                           std::int64_t first_id, const pfv::Container& container) {
+  pfv::add_obstacle(grains_, obstacle, part, motion, first_id, container);
   constexpr double immovable = std::numeric_limits<double>::infinity();
   const Eigen::Index before = masses_.size(), all = grains_.ids.size();
   masses_.conservativeResize(all);

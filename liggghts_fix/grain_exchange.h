@@ -54,8 +54,9 @@ class PfvGrainExchange : protected Pointers {
   /// `streaming`: what the host moves grains by beside their velocities, which then hold it.
   void gather(const PfvGroups& groups, bool with_forces, const PfvStreaming& streaming = {},
               const PfvHomes& homes = {});
-  /// Gives each gathered grain the home that it has in a part by place; collective.
-  void deal(const PfvHomes& homes, const pfv::Ranks& ranks);
+  /// Gives each gathered grain the home that it has in a part by place. Returns those of `others`, places that this rank
+  /// adds to them, m; collective.
+  std::vector<int> deal(const PfvHomes& homes, const pfv::Ranks& ranks, const Eigen::Matrix3Xd& others);
 
   /// Values of the gathered grains, a column each, as rows of the atoms, and the other way round; collective.
   std::vector<double> at_atoms(const Eigen::MatrixXd& at_homes) const;
@@ -70,8 +71,8 @@ class PfvGrainExchange : protected Pointers {
 
   pfv::Packing packing() const { return grains_.view(); }    ///< as gathered, with what was added
   /// The spheres of an obstacle behind those that are there.
-  void add(const pfv::Obstacle& obstacle, const pfv::ObstacleMotion& motion, std::int64_t first_id,
-           const pfv::Container& container);
+  void add(const pfv::Obstacle& obstacle, const pfv::ObstaclePart& part, const pfv::ObstacleMotion& motion,
+           std::int64_t first_id, const pfv::Container& container);
   /// The gathered grains alone.
   Eigen::Index grain_count() const { return static_cast<Eigen::Index>(order_.size()); }
   pfv::Packing grains() const;

@@ -14,6 +14,8 @@
 #include <Eigen/Geometry>
 #include <mpi.h>
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -37,6 +39,12 @@ std::string described(const pfv::Obstacle& obstacle) {
   text << (obstacle.sheets > 0 ? "sheets are " : "they stand out by up to ")
        << (obstacle.sheets > 0 ? 2.0 : 1.0) * obstacle.protrusion << (obstacle.sheets > 0 ? " m thick" : " m");
   return text.str();
+}
+
+/// A sum over ranks ends in digits that depend on their number, by which a mesh may need a sphere more or less.
+double to_nine_digits(double value) {
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 8.0);
+  return step * std::round(value / step);
 }
 
 void append(std::vector<double>& record, const double* first, Eigen::Index count) {
@@ -63,7 +71,7 @@ double PfvObstacles::usual_diameter(const std::string& what, int groupbit) const
   if (sums[1] == 0.0)
     throw pfv::InputError(what + "takes its spheres' size from the grains, and there are none yet; give it "
                                  "`diameter D`, some half of the grains' diameter (m)");
-  return pfv::usual_obstacle_diameter * sums[0] / sums[1];
+  return to_nine_digits(pfv::usual_obstacle_diameter * sums[0] / sums[1]);
 }
 
 /// Between runs a mesh may be moved, or replaced by another of the same name.
@@ -91,6 +99,7 @@ void PfvObstacles::bind(const PfvSettings& settings, int groupbit) {
     const double diameter = source.diameter > 0.0 ? source.diameter : usual_diameter(named(held.id), groupbit);
     held.obstacle = pfv::obstacle_of_mesh(triangles, diameter, named(held.id));
     held.reference = std::move(triangles);
+    held.dealt = false;
     held.fresh = true;
   }
 }
@@ -116,21 +125,61 @@ void PfvObstacles::read() {
   }
 }
 
+Eigen::Matrix3Xd PfvObstacles::spheres() const {
+  Eigen::Index count = 0, next = 0;
+  for (const Held& held : held_) count += held.obstacle.size();
+  Eigen::Matrix3Xd places(3, count);
+  for (const Held& held : held_)
+    for (const auto centre : held.obstacle.centres.colwise()) places.col(next++) = held.motion.placement.of(centre);
+  return places;
+}
+
+void PfvObstacles::deal(const std::vector<int>& ranks, int own) {
+  std::size_t next = 0;
+  for (Held& held : held_) {
+    held.own.clear();
+    held.dealt = true;
+    for (int k = 0; k < held.obstacle.size(); ++k)
+      if (ranks[next++] == own) held.own.push_back(k);
+  }
+}
+
+bool PfvObstacles::are_undealt() const {
+  return std::any_of(held_.begin(), held_.end(), [](const Held& held) { return !held.dealt; });
+}
+
+Eigen::Matrix3Xd PfvObstacles::own_spheres() const {
+  std::vector<int> own;
+  int first = 0;
+  for (const Held& held : held_) {
+    for (const int k : held.own) own.push_back(first + k);
+    first += static_cast<int>(held.obstacle.size());
+  }
+  return spheres()(Eigen::all, own);
+}
+
 void PfvObstacles::add_to(PfvGrainExchange& grains, PfvBodies& bodies, const pfv::Container& container) {
   std::int64_t id = first_obstacle_id;
-  for (const Held& held : held_) {
-    grains.add(held.obstacle, held.motion, id, container);
-    bodies.add_held(pfv::held_body(held.obstacle, held.motion.placement));
+  for (Held& held : held_) {
+    if (!held.dealt) {
+      held.own.resize(held.obstacle.size());
+      std::iota(held.own.begin(), held.own.end(), 0);
+    }
+    const pfv::ObstaclePart part{held.own, static_cast<int>(bodies.rigid().size())};
+    grains.add(held.obstacle, part, held.motion, id, container);
+    bodies.add_held(pfv::held_body(held.obstacle, part, held.motion.placement));
     id += pfv::most_obstacle_spheres;
   }
 }
 
-void PfvObstacles::take_loads(const PfvGrainExchange& grains, const pfv::Forces& forces) {
+void PfvObstacles::take_loads(const PfvGrainExchange& grains, const pfv::Forces& forces, const PfvFlowRanks& ranks) {
   Eigen::Index first = grains.grain_count();
   for (Held& held : held_) {
-    held.load = pfv::load_on(grains.packing(), forces, first, held.obstacle.size(),
-                             held.motion.placement.of(held.obstacle.centre));
-    first += held.obstacle.size();
+    const auto count = static_cast<Eigen::Index>(held.own.size());
+    held.load = pfv::load_on(grains.packing(), forces, first, count, held.motion.placement.of(held.obstacle.centre));
+    ranks.add(held.load.force.data(), 3);
+    ranks.add(held.load.moment.data(), 3);
+    first += count;
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "arguments.h"
 #include "bodies.h"
+#include "flow_ranks.h"
 #include "grain_exchange.h"
 #include "mesh_motion.h"
 
@@ -28,13 +29,22 @@ class PfvObstacles : protected Pointers {
   /// Where the meshes are now. Throws pfv::InputError, the same on all ranks, for one that was deformed. Collective.
   void read();
 
-  /// Puts the spheres behind the gathered grains, and their bodies behind the others; rank 0.
+  // where the flow is, on rank 0 or on all with a part of the spheres each
+
+  /// All spheres that stand for the meshes where these are now, to be dealt out to ranks, and the rank of each.
+  Eigen::Matrix3Xd spheres() const;
+  void deal(const std::vector<int>& ranks, int own);
+  /// Whether there are spheres that have not been dealt out.
+  bool are_undealt() const;
+  /// Those that this rank has.
+  Eigen::Matrix3Xd own_spheres() const;
+  /// Puts the spheres behind the gathered grains, and their bodies behind the others.
   void add_to(PfvGrainExchange& grains, PfvBodies& bodies, const pfv::Container& container);
-  /// The fluid's force on each, from the last flow call; rank 0.
-  void take_loads(const PfvGrainExchange& grains, const pfv::Forces& forces);
+  /// The fluid's force on each, from the last flow call; collective.
+  void take_loads(const PfvGrainExchange& grains, const pfv::Forces& forces, const PfvFlowRanks& ranks);
   /// Adds them to what the meshes' stress modules record in this step; rank 0.
   void push() const;
-  /// Force (0-2, N) and moment about its centre (3-5, N m) on each in turn; rank 0.
+  /// Force (0-2, N) and moment about its centre (3-5, N m) on each in turn.
   double load(int component) const;
   Eigen::Vector3d force() const;  ///< of the fluid on all of them, N
   std::vector<class FixMeshSurface*> meshes() const;
@@ -61,6 +71,8 @@ class PfvObstacles : protected Pointers {
     std::vector<pfv::Triangle> reference;  ///< the mesh as it was when its spheres were found
     pfv::Obstacle obstacle;
     pfv::ObstacleMotion motion;
+    std::vector<int> own;  ///< the spheres that this rank has
+    bool dealt = false;    ///< to ranks; else all are rank 0's
     bool fresh = false;  ///< not spoken of yet
     bool read = false;   ///< since it was bound
     pfv::ObstacleLoad load;

@@ -22,14 +22,11 @@ std::string FixPfv::needs_one_rank() const {
   const pfv::Options& options = settings_.options;
   if (settings_.model != pfv::Model::pores) return "model darcy_grid";
   if (settings_.steps.coupling == pfv::Coupling::implicit) return "coupling implicit";
-  if (options.shear_viscous) return "shear_viscous";
   if (options.rebuild_lag > 0) return "rebuild_lag";
   if (options.volume_rates == pfv::VolumeRates::geometric) return "volume_rates geometric";
   if (options.solver != pfv::SolverKind::amg && options.solver != pfv::SolverKind::automatic)
     return std::string("solver ") + name_of(options.solver);
   if (cell_.any()) return "periodic sides";
-  if (!settings_.obstacles.empty()) return "obstacle";
-  if (others_.rigid_bodies) return "rigid bodies";
   return {};
 }
 
@@ -57,15 +54,17 @@ PfvHomes FixPfv::homes() const {
   return {per_atom_->array_atom, ranks_.dealt.column};
 }
 
-/// How far the parts reach, m3: the boxes around the grains of each rank, within the container, added up.
+/// How far the parts reach, m3: the boxes around the spheres of each rank, within the container, added up.
 double FixPfv::spread() const {
-  const pfv::Packing packing = grains_.packing();
-  if (packing.size() == 0) return ranks_.sum(0.0);
-  Eigen::Matrix3Xd places = packing.positions;
+  const pfv::Packing packing = grains_.grains();
+  const Eigen::Matrix3Xd spheres = obstacles_.own_spheres();
+  if (grains_.grain_count() + spheres.cols() == 0) return ranks_.sum(0.0);
+  Eigen::Matrix3Xd places(3, packing.size() + spheres.cols());
+  places << packing.positions, spheres;
   if (container_.face_count() > 0)
     for (int axis = 0; axis < 3; ++axis)
       places.row(axis) = places.row(axis).cwiseMax(container_.lower[axis]).cwiseMin(container_.upper[axis]);
-  const double diameter = 2.0 * packing.radii.maxCoeff();
+  const double diameter = packing.size() > 0 ? 2.0 * packing.radii.maxCoeff() : 0.0;
   const Eigen::Vector3d reach = places.rowwise().maxCoeff() - places.rowwise().minCoeff();
   return ranks_.sum((reach.array() + diameter).prod());
 }
@@ -76,7 +75,7 @@ void FixPfv::deal_where_due() {
   constexpr double strayed = 1.3;
   if (!ranks_.are_all()) return;
   const PfvHomes known = homes();
-  bool homeless = ranks_.dealt.wanted;
+  bool homeless = ranks_.dealt.wanted || obstacles_.are_undealt();
   for (int i = 0; i < atom->nlocal && !homeless; ++i) homeless = (atom->mask[i] & groupbit) && !known.is_known(i);
   const std::int64_t network = flow_ ? flow_->retriangulations() : 0;
   const bool is_new = network != ranks_.dealt.network;
@@ -91,7 +90,7 @@ void FixPfv::deal_anew() {
   const std::vector<double> first_places = grains_.at_atoms(files_->first_places().columns(grains_.packing().ids));
   const bool remembers = memory.rows() > 0;
   const std::vector<double> loads = remembers ? grains_.at_atoms(memory) : std::vector<double>{};
-  grains_.deal(homes(), *ranks_.library());
+  deal_obstacles(grains_.deal(homes(), *ranks_.library(), spheres_to_deal()));
   grains_.gather(others_.groups, needs_forces(), {}, homes());
   const pfv::Packing::Ids ids = grains_.packing().ids;
   since_.grains = PfvSnapshot::of_columns(ids, grains_.at_homes(places, PfvSnapshot::width));
@@ -100,6 +99,22 @@ void FixPfv::deal_anew() {
   ranks_.dealt.wanted = false;
   ++ranks_.dealt.times;
   ranks_.dealt.spread = spread();
+}
+
+/// Each rank tells of some of the obstacles' spheres, which all know.
+Eigen::Matrix3Xd FixPfv::spheres_to_deal() const {
+  const Eigen::Matrix3Xd all = obstacles_.spheres();
+  std::vector<int> some;
+  for (int k = comm->me; k < all.cols(); k += comm->nprocs) some.push_back(k);
+  return all(Eigen::all, some);
+}
+
+/// `parts`: of the spheres that this rank has told of.
+void FixPfv::deal_obstacles(const std::vector<int>& parts) {
+  std::vector<double> of_all(static_cast<std::size_t>(obstacles_.spheres().cols()), 0.0);
+  for (std::size_t i = 0; i < parts.size(); ++i) of_all[comm->me + i * comm->nprocs] = parts[i];
+  ranks_.add(of_all.data(), static_cast<int>(of_all.size()));
+  obstacles_.deal({of_all.begin(), of_all.end()}, comm->me);
 }
 
 /// Known to all, or of this rank alone, which ends the others.

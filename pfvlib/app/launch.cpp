@@ -76,7 +76,12 @@ Forces DealtPacking::forces_of_rows(const Forces& forces) const {
   rows.total = parts_->returned(forces.total);
   rows.pressure = parts_->returned(forces.pressure);
   rows.viscous = parts_->returned(forces.viscous);
+  rows.torque = parts_->returned(forces.torque);
   return rows;
+}
+
+Eigen::Index first_row(Eigen::Index count, const Ranks* ranks) {
+  return ranks ? count * ranks->own() / ranks->count() : 0;
 }
 
 PackingArrays own_rows(PackingArrays all, const Ranks* ranks) {
@@ -85,7 +90,7 @@ PackingArrays own_rows(PackingArrays all, const Ranks* ranks) {
   ranks->together([&] {
     if (most != least) throw InputError(std::string("the ranks have read packings of different sizes") + remedy);
   });
-  const Eigen::Index count = all.ids.size(), first = count * ranks->own() / ranks->count();
+  const Eigen::Index count = all.ids.size(), first = first_row(count, ranks);
   const Eigen::Index size = count * (ranks->own() + 1) / ranks->count() - first;
   std::vector<int> own(static_cast<std::size_t>(size));
   std::iota(own.begin(), own.end(), static_cast<int>(first));

@@ -152,11 +152,9 @@ void warn(const SolveRequest& request, const FlowModel& flow, const Facts& facts
 }
 
 void write_outputs(const SolveRequest& request, const FlowModel& flow, const DealtPacking& packing,
-                   const Report& report, Eigen::Index obstacles, const Ranks* ranks) {
-  const Eigen::Index grains = packing.rows().size() - obstacles;
+                   const Report& report, Eigen::Index grains, const Forces& forces, const Ranks* ranks) {
   if (request.forces)
-    write_forces(*request.forces, first_spheres(packing.rows(), grains),
-                 first_forces(packing.forces_of_rows(flow.forces()), grains), ranks);
+    write_forces(*request.forces, first_spheres(packing.rows(), grains), first_forces(forces, grains), ranks);
   const auto by_one = [&](const auto& write) {
     const auto alone = [&] {
       if (speaks(ranks)) write();
@@ -202,7 +200,6 @@ bool names_pieces(const std::string& path) { return std::filesystem::path(path).
 
 void refuse_on_ranks(const SolveRequest& request) {
   if (request.settings.grid()) throw InputError("the model darcy_grid runs on one rank");
-  if (!request.obstacles.empty()) throw InputError("--obstacle: a body among the grains takes one rank; run without mpirun");
   if (request.culprits) throw InputError("--culprits is written by one rank; run without mpirun for it");
   if (request.vtk && !names_pieces(*request.vtk))
     throw InputError("--vtk " + *request.vtk + ": each rank writes a piece; give a file .pvtu, which names them");
@@ -218,25 +215,37 @@ void add_times(Report& report, double read_seconds, const StepTimes& step, const
   report.wall_seconds.step = ranks->largest(*step.wall);
 }
 
+/// The grains of a file and, behind them, the spheres of obstacles.
+struct WithObstacles {
+  PackingArrays spheres;
+  Eigen::Index grains = 0;
+  std::vector<StandingObstacle> obstacles;
+};
+
+/// On each rank all of them.
+WithObstacles read_spheres(const SolveRequest& request, const Ranks* ranks, std::ostream& warnings) {
+  if (!ranks && request.vtk && names_pieces(*request.vtk))
+    throw InputError("--vtk " + *request.vtk + ": names the pieces of several ranks; one writes a .vtu");
+  WithObstacles read;
+  const auto read_file = [&] {
+    if (ranks) refuse_on_ranks(request);
+    read.spheres = packing_of(request, warnings);
+    read.grains = read.spheres.ids.size();
+    read.obstacles = add_obstacles(request, read.spheres);
+  };
+  if (ranks) ranks->together(read_file);
+  else read_file();
+  return read;
+}
+
 }  // namespace
 
 void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& ranks, std::ostream& out,
            std::ostream& warnings) {
   const double start = cpu_seconds();
-  PackingArrays read;
-  const auto read_file = [&] { read = packing_of(request, warnings); };
-  if (ranks) {
-    ranks->together([&] { refuse_on_ranks(request); });
-    ranks->together(read_file);
-  } else {
-    if (request.vtk && names_pieces(*request.vtk))
-      throw InputError("--vtk " + *request.vtk + ": names the pieces of several ranks; one writes a .vtu");
-    read_file();
-  }
-  const Eigen::Index grains = read.ids.size();
-  const std::vector<StandingObstacle> obstacles = add_obstacles(request, read);
-  const Eigen::Index in_obstacles = read.ids.size() - grains;
-  const DealtPacking dealt(own_rows(std::move(read), ranks.get()), ranks.get());
+  WithObstacles read = read_spheres(request, ranks.get(), warnings);
+  const Eigen::Index first = first_row(read.spheres.ids.size(), ranks.get());
+  const DealtPacking dealt(own_rows(std::move(read.spheres), ranks.get()), ranks.get());
   const Packing packing = dealt.own();
   const double read_seconds = cpu_seconds() - start;
 
@@ -253,8 +262,11 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
 
   Report report = flow.report();
   add_times(report, read_seconds, step, ranks.get());
-  report.obstacles = results_of(obstacles, request, flow.forces(), packing);
-  write_outputs(request, flow, dealt, report, in_obstacles, ranks.get());
+  const bool wants_forces = request.forces || !read.obstacles.empty();
+  const Forces forces = wants_forces ? dealt.forces_of_rows(flow.forces()) : Forces{};
+  report.obstacles = results_of(read.obstacles, request, forces, dealt.rows(), first, ranks.get());
+  const Eigen::Index own_grains = std::clamp<Eigen::Index>(read.grains - first, 0, dealt.rows().size());
+  write_outputs(request, flow, dealt, report, own_grains, forces, ranks.get());
   warn(request, flow, Facts(request, flow, packing, ranks.get()), report, warnings);
   write_summary(request, report, out);
 }

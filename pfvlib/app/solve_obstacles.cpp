@@ -3,6 +3,7 @@
 
 #include "network/grains.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace pfv::app {
@@ -41,11 +42,16 @@ std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, Packing
 }
 
 std::vector<ObstacleResult> results_of(const std::vector<StandingObstacle>& obstacles, const SolveRequest& request,
-                                       const Forces& forces, const Packing& packing) {
+                                       const Forces& forces, const Packing& rows, Eigen::Index first_row,
+                                       const Ranks* ranks) {
   std::vector<ObstacleResult> results;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const auto& [obstacle, first, count] = obstacles[i];
-    const ObstacleLoad load = load_on(packing, forces, first, count, obstacle.centre);
+    const Eigen::Index begin = std::clamp<Eigen::Index>(first - first_row, 0, rows.size());
+    const Eigen::Index end = std::clamp<Eigen::Index>(first + count - first_row, 0, rows.size());
+    ObstacleLoad load = load_on(rows, forces, begin, end - begin, obstacle.centre);
+    for (Eigen::Vector3d* part : {&load.force, &load.moment})
+      if (ranks) ranks->add(part->data(), 3);
     results.push_back({request.obstacles[i], count, obstacle.volume, obstacle.union_volume, obstacle.recess,
                        obstacle.protrusion, obstacle.centre, load.force, load.moment});
   }

@@ -3,6 +3,7 @@
 
 #include "solve_arguments.hpp"
 
+#include "parallel/ranks.hpp"
 #include "pfv/obstacle.hpp"
 #include "pfv/report.hpp"
 
@@ -20,8 +21,10 @@ struct StandingObstacle {
 /// Puts the spheres of each obstacle behind the grains, as far as they are in the container.
 std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, PackingArrays& packing);
 
+/// `rows`: those of the packing that this rank has read, from `first_row` on, and what acts on them. Collective on ranks.
 std::vector<ObstacleResult> results_of(const std::vector<StandingObstacle>& obstacles, const SolveRequest& request,
-                                       const Forces& forces, const Packing& packing);
+                                       const Forces& forces, const Packing& rows, Eigen::Index first_row,
+                                       const Ranks* ranks);
 
 /// Of the first `count` spheres alone: the grains, in front of the obstacles.
 Packing first_spheres(const Packing& packing, Eigen::Index count);

@@ -46,6 +46,27 @@ class Ranks(CommandTest):
             for name in ("porosity", "permeability", "permeability_error", "inflow"):
                 self.assertAlmostEqual(every[name] / one[name], 1.0, delta=1e-9, msg=name)
 
+    def test_an_obstacle_among_the_grains(self):
+        """A box, whose spheres are dealt out with the grains."""
+        corners = [(x, y, z) for x in (0.3, 0.7) for y in (0.35, 0.65) for z in (0.4, 0.6)]
+        sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        facets = [(a, b, c) for a, b, c, d in sides] + [(a, c, d) for a, b, c, d in sides]
+        (self.folder / "box.stl").write_text("solid box\n" + "".join(
+            "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {' '.join(map(str, corners[i]))}\n" for i in facet) +
+            "endloop\nendfacet\n" for facet in facets) + "endsolid box\n")
+        options = [*THROUGH_FLOW, "--solver", "amg", "--tolerance", "1e-10", "--obstacle", "box.stl"]
+        self.solve(*options, "--forces", "one.csv", "--report", "one.json")
+        expected, one = self.forces("one.csv"), self.json("one.json")["obstacles"][0]
+        done = self.on_ranks(3, "--packing", DENSE, *UNIT_BOX, *options, "--forces", "all.csv", "--report", "all.json")
+        self.assertEqual(done.returncode, 0, done.stderr)  # it warns of grains within the box
+        found, every = self.forces("all.csv"), self.json("all.json")["obstacles"][0]
+        self.assertEqual(list(found), list(expected))
+        values, wanted = (numpy.array(list(rows.values())) for rows in (found, expected))
+        self.assertLess(numpy.abs(values - wanted).max(), 1e-7 * numpy.abs(wanted).max())
+        for name in ("force", "moment"):
+            numpy.testing.assert_allclose(every[name], one[name], atol=1e-8 * numpy.abs(one["force"]).max())
+        self.assertEqual(every["spheres"], one["spheres"])
+
     def test_fields_are_written_in_pieces_that_make_up_the_whole(self):
         options = [*THROUGH_FLOW, "--solver", "amg", "--tolerance", "1e-11"]
         self.solve(*options, "--vtk", "one.vtu")

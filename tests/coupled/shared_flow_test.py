@@ -262,15 +262,15 @@ class SharedFlow(CoupledTest):
         self.assertIn("the flow is shared by 2 ranks", screen)
         screen = self.liggghts(HEAD + f"fix flow all pfv {SEEPAGE}\nrun 1\n", ranks=2)
         self.assertNotIn("shared by", screen)
-        screen = self.liggghts(HEAD + f"fix flow all pfv {SEEPAGE} solver amg shear_viscous yes\nrun 1\n", ranks=2)
-        self.assertIn("the flow is on one rank: shear_viscous needs that", screen)
+        screen = self.liggghts(HEAD + f"fix flow all pfv {SEEPAGE} solver amg volume_rates geometric\nrun 1\n", ranks=2)
+        self.assertIn("the flow is on one rank: volume_rates geometric needs that", screen)
 
     def test_what_ranks_cannot_share_is_refused(self):
-        for words, reason in (("coupling implicit", "coupling implicit"), ("shear_viscous yes", "shear_viscous"),
-                              ("solver cholmod", "solver cholmod")):
+        for words, reason in (("coupling implicit", "coupling implicit"),
+                              ("volume_rates geometric", "volume_rates geometric"), ("solver cholmod", "solver cholmod")):
             fix = f"fix flow all pfv {SEEPAGE} ranks all {words}\n"
             self.refused(HEAD + fix + "run 0\n", reason, "ranks one", ranks=2)
-            if words.startswith("shear"):
+            if words.startswith("volume"):
                 self.liggghts(HEAD + fix + "run 0\n")  # there is one only
 
     def test_an_error_of_the_library_ends_all_with_one_line(self):

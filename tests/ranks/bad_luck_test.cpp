@@ -36,6 +36,7 @@ std::shared_ptr<pfv::RowShare> own_rows(int rows) {
   for (int row = 0; row < rows; ++row) share->number.push_back(share->first + row);
   share->exchange.sent.resize(ranks.count());
   share->exchange.received.resize(ranks.count());
+  share->shared = share->exchange;
   return share;
 }
 

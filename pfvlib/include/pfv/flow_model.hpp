@@ -50,7 +50,7 @@ inline Piston piston_of(const std::vector<Piston>& pistons, int face) {
 }
 
 /// How a rigid body of several spheres (Packing::bodies) yields to forces, and what acts on it beside those on its
-/// spheres.
+/// spheres. Of several ranks each gives all bodies, alike but for the arms: those of the spheres that it has.
 struct RigidBody {
   Eigen::Matrix3Xd arms;  ///< m, from its centre of mass to each of its spheres, in the order of the packing
   Eigen::Vector3d masses;    ///< kg, > 0, along x, y, z: its mass; infinite along what it is held

@@ -75,6 +75,15 @@ void add_obstacle(PackingArrays& packing, const Obstacle& obstacle, const Obstac
 /// The rigid body that these spheres are, which no force moves.
 RigidBody held_body(const Obstacle& obstacle, const Placement& placement);
 
+/// What one of several ranks has of an obstacle: these of its spheres, ascending, as this rigid body of the packing.
+struct ObstaclePart {
+  std::vector<int> spheres;
+  int body = 0;
+};
+void add_obstacle(PackingArrays& packing, const Obstacle& obstacle, const ObstaclePart& part, const ObstacleMotion& motion,
+                  std::int64_t first_id, const Container& container);
+RigidBody held_body(const Obstacle& obstacle, const ObstaclePart& part, const Placement& placement);
+
 /// Force (N) and moment (N m) about `centre` (m) of the fluid on the spheres from column `first` on, `count` of them.
 struct ObstacleLoad {
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();

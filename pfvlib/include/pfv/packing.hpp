@@ -25,7 +25,8 @@ namespace pfv {
 /// |            |       |      | spheres                                               |
 /// | bodies     | N     | -    | number of the rigid body that holds the sphere, from  |
 /// |            |       |      | 0 on, -1 for none; empty: there are no bodies. What   |
-/// |            |       |      | lies within one body is no fluid                      |
+/// |            |       |      | lies within one body is no fluid. On several ranks    |
+/// |            |       |      | the same number is the same body                      |
 struct Packing {
   using Ids = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
 

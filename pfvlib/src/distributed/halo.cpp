@@ -57,8 +57,6 @@ Halo::Halo(const Packing& own, const Container& container, OutsideGrains outside
 void Halo::check_own(const Packing& own, const Container& container, OutsideGrains outside) {
   if (container.any_periodic())
     throw InputError("a periodic box on several ranks is not supported: run it on one rank");
-  if (own.bodies.size() > 0 && (own.bodies.array() >= 0).any())
-    throw InputError("rigid bodies on several ranks are not supported: run them on one rank");
   active_ = select_grains(own, container, own.size() == 0 ? OutsideGrains::leave_out : outside).columns;
 }
 
@@ -95,6 +93,8 @@ void Halo::take_own(const Packing& own) {
   seen_.displaced_volumes.resize(arrays_.displaced ? n : 0);
   for (Eigen::Index k = 0; k < seen_.displaced_volumes.size(); ++k)
     seen_.displaced_volumes[k] = displaced_volume(own, k);
+  seen_.bodies.resize(arrays_.bodies ? n : 0);
+  for (Eigen::Index k = 0; k < seen_.bodies.size(); ++k) seen_.bodies[k] = body_of(own, k);
   owner_.assign(static_cast<std::size_t>(n), ranks_->own());
 }
 
@@ -165,6 +165,7 @@ void Halo::append_ghosts(int rank, const Ranks::Bytes& bytes) {
 ActiveGrains Halo::active_grains(const Container& container) const {
   ActiveGrains grains = select_grains(seen_.view(), container, OutsideGrains::leave_out);
   grains.spheres.mean_radius = totals_.mean_radius;
+  if (arrays_.bodies) note_bodies(grains, seen_.view());
   return grains;
 }
 

@@ -143,6 +143,7 @@ void PackingParts::deal(const Packing& rows) {
 }
 
 Eigen::Matrix3Xd PackingParts::returned(const Eigen::Matrix3Xd& values) const {
+  if (!ranks_->any(values.cols() > 0)) return Eigen::Matrix3Xd(3, 0);
   std::vector<Ranks::Bytes> to(ranks_->count());
   Eigen::Index next = 0;
   for (int r = 0; r < ranks_->count(); ++r) {

@@ -16,7 +16,8 @@ class PackingParts {
   PackingParts(const Packing& rows, const Ranks& ranks);
   /// What it has in the end.
   const PackingArrays& own() const { return own_; }
-  /// Values of the own spheres, one column each, back to where their rows came from. Collective.
+  /// Values of the own spheres, one column each, back to where their rows came from; none where there are none.
+  /// Collective.
   Eigen::Matrix3Xd returned(const Eigen::Matrix3Xd& values) const;
 
  private:

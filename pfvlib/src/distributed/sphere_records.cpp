@@ -10,15 +10,15 @@ namespace pfv {
 
 namespace {
 
-constexpr int record = 12;  // id, position, radius, velocity, spin, displaced volume
+constexpr int record = 13;  // id, position, radius, velocity, spin, displaced volume, body
 
 }  // namespace
 
 SphereArrays arrays_of_all(const Packing& packing, const Ranks& ranks) {
-  Eigen::Vector3d has(packing.velocities.cols() > 0, packing.angular_velocities.cols() > 0,
-                      packing.displaced_volumes.size() > 0);
-  ranks.take_largest(has.data(), 3);
-  return {has[0] > 0.0, has[1] > 0.0, has[2] > 0.0};
+  Eigen::Vector4d has(packing.velocities.cols() > 0, packing.angular_velocities.cols() > 0,
+                      packing.displaced_volumes.size() > 0, has_bodies(packing));
+  ranks.take_largest(has.data(), 4);
+  return {has[0] > 0.0, has[1] > 0.0, has[2] > 0.0, has[3] > 0.0};
 }
 
 void append_sphere(Ranks::Bytes& bytes, const Packing& packing, Eigen::Index k) {
@@ -32,6 +32,7 @@ void append_sphere(Ranks::Bytes& bytes, const Packing& packing, Eigen::Index k) 
   put(5, packing.velocities);
   put(8, packing.angular_velocities);
   values[11] = displaced_volume(packing, k);
+  values[12] = body_of(packing, k);
   append(bytes, values.data(), record);
 }
 
@@ -46,6 +47,7 @@ void resize(PackingArrays& packing, const SphereArrays& arrays, Eigen::Index cou
   packing.velocities.conservativeResize(3, arrays.velocities ? count : 0);
   packing.angular_velocities.conservativeResize(3, arrays.spins ? count : 0);
   packing.displaced_volumes.conservativeResize(arrays.displaced ? count : 0);
+  packing.bodies.conservativeResize(arrays.bodies ? count : 0);
 }
 
 void take_spheres(PackingArrays& packing, const Ranks::Bytes& bytes, Eigen::Index first) {
@@ -58,6 +60,7 @@ void take_spheres(PackingArrays& packing, const Ranks::Bytes& bytes, Eigen::Inde
   if (packing.velocities.cols() > 0) packing.velocities.middleCols(first, count) = rows.middleRows<3>(5);
   if (packing.angular_velocities.cols() > 0) packing.angular_velocities.middleCols(first, count) = rows.middleRows<3>(8);
   if (packing.displaced_volumes.size() > 0) packing.displaced_volumes.segment(first, count) = rows.row(11);
+  if (packing.bodies.size() > 0) packing.bodies.segment(first, count) = rows.row(12).cast<int>();
 }
 
 PackingArrays columns_of(const PackingArrays& packing, const std::vector<int>& columns) {

@@ -10,9 +10,9 @@ namespace pfv {
 
 // Spheres on their way from one rank to another, and parts of a packing.
 
-/// Which of the optional arrays any rank has: then all have them, with zeros. Collective.
+/// Which of the optional arrays any rank has: then all have them, with zeros, and -1 for no body. Collective.
 struct SphereArrays {
-  bool velocities = false, spins = false, displaced = false;
+  bool velocities = false, spins = false, displaced = false, bodies = false;
 };
 SphereArrays arrays_of_all(const Packing& packing, const Ranks& ranks);
 

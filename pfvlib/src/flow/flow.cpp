@@ -160,7 +160,6 @@ void check_shared(const Options& options) {
   if (resolved(options.solver) != SolverKind::amg)
     throw InputError(std::string("the solver ") + name_of(options.solver) + " runs on one rank; on several give amg");
   if (options.rebuild_lag > 0) throw InputError("rebuild_lag works on one rank; on several leave it at 0");
-  if (options.shear_viscous) throw InputError("shear viscous forces work on one rank; on several leave them out");
   if (options.volume_rates == VolumeRates::geometric || options.partition == Partition::yade)
     throw InputError("the papers' volume rates and YADE's partition work on one rank; on several leave them out");
 }

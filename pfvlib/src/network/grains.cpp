@@ -178,9 +178,17 @@ void gather_spheres(const Packing& packing, const Eigen::Vector3d& lower, const 
   }
 }
 
+}  // namespace
+
 bool has_bodies(const Packing& packing) { return (packing.bodies.array() >= 0).any(); }
 
-}  // namespace
+void note_bodies(ActiveGrains& grains, const Packing& packing) {
+  grains.any_bodies = true;
+  grains.held.resize(packing.size());
+  for (Eigen::Index k = 0; k < packing.size(); ++k) grains.held[k] = body_of(packing, k);
+  grains.body.clear();
+  for (const int k : grains.columns) grains.body.push_back(grains.held[k]);
+}
 
 ActiveGrains select_grains(const Packing& packing, const Container& container, OutsideGrains outside) {
   check_spheres(packing);
@@ -205,16 +213,16 @@ ActiveGrains select_grains(const Packing& packing, const Container& container, O
   gather_spheres(packing, container.lower, grains.columns, spheres);
   if (spheres.size() > 0) spheres.mean_radius = spheres.radii.mean();
   if (packing.displaced_volumes.size() > 0) spheres.displaced = packing.displaced_volumes(grains.columns);
-  if (has_bodies(packing)) {
-    grains.held = packing.bodies;
-    for (const int k : grains.columns) grains.body.push_back(packing.bodies[k]);
-  }
+  if (has_bodies(packing)) note_bodies(grains, packing);
   return grains;
 }
 
 bool holds_the_same(const ActiveGrains& grains, const Packing& packing) {
-  if (!has_bodies(packing)) return grains.held.size() == 0;
-  return grains.held.size() == packing.bodies.size() && grains.held == packing.bodies;
+  if (!grains.any_bodies) return !has_bodies(packing);
+  if (packing.size() > grains.held.size()) return false;
+  for (Eigen::Index k = 0; k < packing.size(); ++k)
+    if (body_of(packing, k) != grains.held[k]) return false;
+  return true;
 }
 
 bool same_grains(const Packing& packing, const Container& container, const std::vector<std::int64_t>& ids,

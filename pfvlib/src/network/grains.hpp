@@ -15,9 +15,9 @@ namespace pfv {
 struct ActiveGrains {
   std::vector<int> columns;  ///< of the packing, ascending
   Spheres spheres;           ///< the same grains, in coordinates from the lower corner of the box around it
-  // without rigid bodies both are empty
-  Eigen::VectorXi held;   ///< the packing's bodies, one entry for each of its spheres
-  std::vector<int> body;  ///< of each grain, -1 for none
+  bool any_bodies = false;  ///< rigid ones, on any rank; without them what follows is empty
+  Eigen::VectorXi held;     ///< the packing's bodies, one entry for each of its spheres
+  std::vector<int> body;    ///< of each grain, -1 for none
 };
 
 /// Throws InputError for arrays of different lengths, numbers that are not finite, radii <= 0, repeated ids.
@@ -30,7 +30,14 @@ void check_motion(const Packing& packing);
 /// container or no grain at all.
 ActiveGrains select_grains(const Packing& packing, const Container& container, OutsideGrains outside);
 
-/// Whether rigid bodies hold the same spheres as when the grains were selected.
+/// The rigid body that holds a sphere, or -1.
+inline int body_of(const Packing& packing, Eigen::Index column) {
+  return packing.bodies.size() > 0 ? packing.bodies[column] : -1;
+}
+bool has_bodies(const Packing& packing);
+/// Takes up which grains rigid bodies hold, there being some.
+void note_bodies(ActiveGrains& grains, const Packing& packing);
+/// Whether rigid bodies hold the same spheres as when the grains were selected, which came first among theirs.
 bool holds_the_same(const ActiveGrains& grains, const Packing& packing);
 /// Cheap tests of each step.
 bool is_inside(const Packing& packing, Eigen::Index column, const Container& container);

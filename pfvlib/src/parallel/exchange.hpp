@@ -30,7 +30,20 @@ struct Exchange {
         for (std::size_t row = 0; row < rows; ++row)
           values(static_cast<Eigen::Index>(row), received[r][k]) = from[r][rows * k + row];
   }
-  /// The same of a vector.
+  /// The other way round: calls take(value, theirs) at each entry that is sent, with what each rank has in its place,
+  /// rank after rank.
+  template <class Take>
+  void give_back(const Ranks& ranks, Eigen::VectorXd& values, const Take& take) const {
+    std::vector<std::vector<double>> to(sent.size()), from(sent.size());
+    for (std::size_t r = 0; r < sent.size(); ++r) {
+      for (const int entry : received[r]) to[r].push_back(values[entry]);
+      from[r].resize(sent[r].size());
+    }
+    ranks.exchange(to, from);
+    for (std::size_t r = 0; r < sent.size(); ++r)
+      for (std::size_t k = 0; k < sent[r].size(); ++k) take(values[sent[r][k]], from[r][k]);
+  }
+  /// As above, of a vector.
   void refresh(const Ranks& ranks, Eigen::VectorXd& values) const {
     refresh(ranks, Eigen::Map<Eigen::Matrix<double, 1, Eigen::Dynamic>>(values.data(), values.size()));
   }

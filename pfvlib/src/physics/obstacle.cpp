@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace pfv {
 
@@ -227,8 +228,16 @@ void draw_in(Vector& centre, double& radius, const Vector& velocity, const Conta
 
 void add_obstacle(PackingArrays& packing, const Obstacle& obstacle, const ObstacleMotion& motion,
                   std::int64_t first_id, const Container& container) {
-  const Eigen::Index before = packing.ids.size(), own = obstacle.size(), all = before + own;
-  const int body = packing.bodies.size() > 0 && before > 0 ? packing.bodies.maxCoeff() + 1 : 0;
+  ObstaclePart all;
+  all.spheres.resize(static_cast<std::size_t>(obstacle.size()));
+  std::iota(all.spheres.begin(), all.spheres.end(), 0);
+  all.body = packing.bodies.size() > 0 && packing.ids.size() > 0 ? packing.bodies.maxCoeff() + 1 : 0;
+  add_obstacle(packing, obstacle, all, motion, first_id, container);
+}
+
+void add_obstacle(PackingArrays& packing, const Obstacle& obstacle, const ObstaclePart& part, const ObstacleMotion& motion,
+                  std::int64_t first_id, const Container& container) {
+  const Eigen::Index before = packing.ids.size(), own = static_cast<Eigen::Index>(part.spheres.size()), all = before + own;
   if (packing.bodies.size() != before) packing.bodies = Eigen::VectorXi::Constant(before, -1);
   if (packing.displaced_volumes.size() != before)
     packing.displaced_volumes = 4.0 / 3.0 * pi * packing.radii.array().cube();
@@ -244,19 +253,20 @@ void add_obstacle(PackingArrays& packing, const Obstacle& obstacle, const Obstac
   if (!still) packing.velocities.conservativeResize(3, all);
   if (!still) packing.angular_velocities.conservativeResize(3, all);
   for (Eigen::Index k = 0; k < own; ++k) {
-    Vector place = motion.placement.of(obstacle.centres.col(k));
-    double radius = obstacle.radii[k];
+    const int sphere = part.spheres[k];
+    Vector place = motion.placement.of(obstacle.centres.col(sphere));
+    double radius = obstacle.radii[sphere];
     const Vector velocity = motion.velocity + motion.spin.cross(place - motion.pivot);
     draw_in(place, radius, velocity, container);
-    packing.ids[before + k] = first_id + k;
+    packing.ids[before + k] = first_id + sphere;
     packing.positions.col(before + k) = place;
     packing.radii[before + k] = radius;
     if (still) continue;
     packing.velocities.col(before + k) = motion.velocity + motion.spin.cross(place - motion.pivot);
     packing.angular_velocities.col(before + k) = motion.spin;
   }
-  packing.bodies.tail(own).setConstant(body);
-  packing.displaced_volumes.tail(own) = obstacle.displaced;
+  packing.bodies.tail(own).setConstant(part.body);
+  packing.displaced_volumes.tail(own) = obstacle.displaced(part.spheres);
 }
 
 RigidBody held_body(const Obstacle& obstacle, const Placement& placement) {
@@ -264,6 +274,12 @@ RigidBody held_body(const Obstacle& obstacle, const Placement& placement) {
   body.arms = placement.turn * (obstacle.centres.colwise() - obstacle.centre);
   body.masses.setConstant(std::numeric_limits<double>::infinity());
   body.inertias = body.masses;
+  return body;
+}
+
+RigidBody held_body(const Obstacle& obstacle, const ObstaclePart& part, const Placement& placement) {
+  RigidBody body = held_body(obstacle, placement);
+  body.arms = Eigen::Matrix3Xd(body.arms(Eigen::all, part.spheres));
   return body;
 }
 

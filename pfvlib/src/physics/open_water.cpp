@@ -4,11 +4,10 @@
 #include "geometry/pi.hpp"
 #include "network/periodic_images.hpp"
 #include "network/pore_boundaries.hpp"
-#include "physics/bead_mobility.hpp"
+#include "physics/drag_of_bodies.hpp"
 #include "physics/isotropic_drag.hpp"
 #include "problem/container_geometry.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -26,58 +25,6 @@ constexpr double nearest = 1.5;        // radii: nearer, roughness and contacts 
 constexpr double haberman = 2.1044;    // of r/R on the axis of a tube: Happel & Brenner, eq. 7-3.27
 constexpr double least_mobility = 0.2, most_mobility = 1.6;
 constexpr double negligible = 1e-6;  // of Stokes' drag
-
-/// The throats around each pore.
-struct ThroatLists {
-  std::vector<int> begin, throat;
-
-  explicit ThroatLists(const PoreNetwork& network) : begin(network.pores() + 1, 0), throat(2 * network.throats()) {
-    for (const auto& pores : network.throat_pores)
-      for (const int pore : pores) ++begin[pore + 1];
-    for (int p = 0; p < network.pores(); ++p) begin[p + 1] += begin[p];
-    std::vector<int> next(begin.begin(), begin.end() - 1);
-    for (int t = 0; t < network.throats(); ++t)
-      for (const int pore : network.throat_pores[t]) throat[next[pore]++] = t;
-  }
-};
-
-/// Spheres that move as one: a body's, or one alone.
-struct Group {
-  std::vector<int> spheres;
-  std::vector<Matrix3d> unbounded;  ///< drag of each in unbounded fluid, over 6 pi mu, m
-};
-
-/// S_k G_k^-1 S_k^T of the pores around these spheres, kg/s. The pores around them hold their pressure, by which it is
-/// no larger than the whole network's.
-Matrix3d drag_of_pores(const PoreNetwork& network, const Conductances& conductances, const ForceMatrix& matrix,
-                       const std::vector<char>& imposed, const ThroatLists& lists, const Group& group) {
-  std::map<int, Vector3d> sources;
-  for (const int k : group.spheres)
-    for (int e = matrix.row_begin[k]; e < matrix.row_begin[k + 1]; ++e)
-      if (!imposed[matrix.pore[e]])
-        sources.emplace(matrix.pore[e], Vector3d::Zero()).first->second += matrix.value.col(e).head<3>();
-  std::map<int, int> place;
-  for (const auto& [pore, source] : sources) place.emplace(pore, static_cast<int>(place.size()));
-  const auto count = static_cast<Eigen::Index>(place.size());
-  if (count == 0) return Matrix3d::Zero();
-  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(count, count);
-  Eigen::MatrixX3d s = Eigen::MatrixX3d::Zero(count, 3);
-  for (const auto& [pore, i] : place) {
-    s.row(i) = sources[pore];
-    for (int l = lists.begin[pore]; l < lists.begin[pore + 1]; ++l) {
-      const int t = lists.throat[l];
-      const auto& [first, second] = network.throat_pores[t];
-      const auto other = place.find(first == pore ? second : first);
-      g(i, i) += conductances.value[t];
-      if (other != place.end()) g(i, other->second) -= conductances.value[t];
-    }
-    if (g(i, i) == 0.0) s.row(i).setZero();  // closed: its pressure is that of another pore
-  }
-  // a set without an imposed pressure is free to shift: the sources of a sphere add up to 0 in it
-  g.diagonal().array() += 1e-10 * g.diagonal().maxCoeff();
-  const Matrix3d drag = s.transpose() * g.ldlt().solve(s);
-  return 0.5 * (drag + drag.transpose());
-}
 
 PlaneKind kind_of(const ContainerFace& face) {
   if (face.boundary.imposes_pressure()) return PlaneKind::open;
@@ -161,26 +108,6 @@ Matrix3d wall_correction(const Container& container, const Spheres& spheres, int
   const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(mobility);
   const Vector3d bounded = parts.eigenvalues().cwiseMax(least_mobility).cwiseMin(most_mobility);
   return parts.eigenvectors() * bounded.cwiseInverse().asDiagonal() * parts.eigenvectors().transpose();
-}
-
-/// The spheres in open water by themselves, or with all others of their bodies. A body of more spheres than this, an
-/// obstacle, keeps the drag of the network: that of its beads costs the cube of their number.
-constexpr std::size_t most_beads = 200;
-
-std::vector<Group> groups_of(const Spheres& spheres, const std::vector<int>& body, const std::vector<int>& open) {
-  std::map<int, std::vector<int>> members;
-  for (int k = 0; k < static_cast<int>(body.size()); ++k)
-    if (body[k] >= 0) members[body[k]].push_back(k);
-  std::vector<Group> groups;
-  for (const int k : open) {
-    if (body.empty() || body[k] < 0 || members[body[k]].size() == 1) {
-      groups.push_back({{k}, {spheres.radii[k] * Matrix3d::Identity()}});
-    } else if (std::vector<int>& beads = members[body[k]]; !beads.empty() && beads.size() <= most_beads) {
-      groups.push_back({beads, drags_of_beads(spheres, beads)});
-      beads.clear();  // taken
-    }
-  }
-  return groups;
 }
 
 /// What the surfaces of the spheres in question look at.
@@ -288,6 +215,32 @@ class Surroundings {
   std::vector<View> views_;
 };
 
+/// What each sphere in question lacks, by itself or with the others of its body.
+std::vector<OpenWaterDrag> drags_of_each(const PoreSources& pores, const Spheres& spheres, const Container& container,
+                                         double viscosity, const std::vector<Matrix3d>& known,
+                                         const std::vector<int>& body, const std::vector<char>& open, const Share& share) {
+  const auto walls = [&](int k) { return wall_correction(container, spheres, k); };
+  std::vector<MissingDrag> missing =
+      missing_drags_of_bodies(pores, spheres, body, open, viscosity, walls, known, share);
+  const std::vector<char> alone = spheres_alone(spheres.size(), body, share);
+  for (int k = 0; k < spheres.size(); ++k) {
+    if (!open[k] || !alone[k]) continue;
+    PoresAround around;
+    pores.add(k, around);
+    const Matrix3d unbounded = spheres.radii[k] * Matrix3d::Identity(), wall = walls(k);
+    Matrix3d lacking = -drag_of(around);
+    lacking += 3.0 * pi * viscosity * (wall * unbounded + unbounded * wall);
+    lacking -= known[k];
+    missing.push_back({k, lacking});
+  }
+  std::sort(missing.begin(), missing.end(), [&](const MissingDrag& a, const MissingDrag& b) {
+    return spheres.ids[a.sphere] < spheres.ids[b.sphere];
+  });
+  std::vector<OpenWaterDrag> drags;
+  for (const MissingDrag& one : missing) drags.push_back({one.sphere, one.drag, {}, Vector3d::Zero(), {}});
+  return drags;
+}
+
 /// What leans on a ghost may be unknown here.
 void take_resistances_of_owners(std::vector<OpenWaterDrag>& drags, int spheres, const Share& share) {
   if (!share.ranks) return;
@@ -371,28 +324,15 @@ std::vector<OpenWaterDrag> open_water_drags(const PoreNetwork& network, const Sp
                                             const std::vector<ResistanceBlock>& others, const std::vector<int>& body,
                                             bool still, const Share& share) {
   const std::vector<double> fractions = solid_fractions_around(network, throats, vertices);
-  std::vector<int> open;
-  for (int k = 0; k < static_cast<int>(fractions.size()); ++k)
-    if (fractions[k] < open_fraction && share.is_whole(k)) open.push_back(k);
-  std::vector<OpenWaterDrag> drags;
-  if (!share.any(!open.empty())) return drags;
-  std::sort(open.begin(), open.end(), [&](int a, int b) { return spheres.ids[a] < spheres.ids[b]; });
-  const ThroatLists lists(network);
+  std::vector<char> open(spheres.size(), 0);
+  for (int k = 0; k < static_cast<int>(fractions.size()); ++k) open[k] = fractions[k] < open_fraction && share.is_whole(k);
+  if (!share.any(std::count(open.begin(), open.end(), 1) > 0)) return {};
   std::vector<Matrix3d> known(spheres.size(), Matrix3d::Zero());
   for (const auto& [of, by, block] : others)
     if (of == by) known[of] += block;
-  for (const Group& group : groups_of(spheres, body, open)) {
-    Matrix3d missing = -drag_of_pores(network, conductances, matrix, imposed, lists, group);
-    double traces = 0.0;
-    for (std::size_t i = 0; i < group.spheres.size(); ++i) {
-      const Matrix3d walls = wall_correction(container, spheres, group.spheres[i]);
-      missing += 3.0 * pi * viscosity * (walls * group.unbounded[i] + group.unbounded[i] * walls);
-      missing -= known[group.spheres[i]];
-      traces += group.unbounded[i].trace();
-    }
-    for (std::size_t i = 0; i < group.spheres.size(); ++i)
-      drags.push_back({group.spheres[i], group.unbounded[i].trace() / traces * missing, {}, Vector3d::Zero(), {}});
-  }
+  std::vector<OpenWaterDrag> drags = drags_of_each(
+      {network, conductances, matrix, imposed, ThroatLists(network), pore_names(network, share)}, spheres, container,
+      viscosity, known, body, open, share);
   Surroundings(network, spheres, vertices, container, body, still).look(throats, drags);
   settle_reactions(drags, spheres.size(), share);
   for (OpenWaterDrag& drag : drags) drag.is_own = share.owns_sphere(drag.sphere);

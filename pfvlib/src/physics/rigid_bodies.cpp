@@ -26,6 +26,7 @@ Loads RigidBodies::gathered(const Loads& loads) const {
   wide << loads, Loads::Zero(6, count());
   for (const Member& member : members)
     wide.col(first + member.body) += on_body(member, loads.col(member.sphere));
+  if (ranks && count() > 0) ranks->add(wide.col(first).data(), static_cast<std::size_t>(6 * count()));
   return wide;
 }
 
@@ -46,7 +47,7 @@ Eigen::Matrix3d lever_of(const Eigen::Vector3d& arm, const Eigen::Matrix3d& axes
 
 }  // namespace
 
-RigidBodies rigid_bodies(const Eigen::VectorXi& held, const std::vector<int>& columns, int faces,
+RigidBodies rigid_bodies(const Eigen::Ref<const Eigen::VectorXi>& held, const std::vector<int>& columns, int faces,
                          const std::vector<RigidBody>& bodies) {
   RigidBodies result;
   result.first = static_cast<int>(columns.size()) + faces;

@@ -12,34 +12,61 @@ namespace pfv {
 
 namespace {
 
+/// Whether fluid comes in at a contact, by what its boundary imposes.
+bool carries(const BuiltNetwork& built, const Solution& solution, const PoreBoundaries::Contact& contact) {
+  // what a region brings in enters inside, also into a pore that touches a face
+  if (contact.boundary >= first_region(solution.container) && contact.face != PoreBoundaries::inside) return false;
+  const Boundary& boundary = boundary_of(solution.container, contact.boundary);
+  const int unknown = built.unknowns.of_pore[contact.pore];
+  if (unknown == Unknowns::imposed) return boundary.imposes_pressure();
+  return boundary.imposes_flux() && built.unknowns.of_boundary[contact.boundary] == unknown;
+}
+
+/// Pores that bodies close off may share the pressure of a flux boundary that they do not touch: what they take comes in
+/// there, spread over its contacts by area; over a region, which has none, alike.
+void add_inflows_of_joined(const BuiltNetwork& built, const Solution& solution, const Eigen::VectorXd& inflow,
+                           std::vector<double>& inflows) {
+  if (built.closed.joined == 0) return;
+  const auto& contacts = built.boundaries.contacts;
+  const Unknowns& unknowns = built.unknowns;
+  const auto boundaries = static_cast<Eigen::Index>(unknowns.of_boundary.size());
+  std::vector<char> at_boundary(unknowns.of_pore.size(), 0);
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(2 * boundaries);  // of each boundary: inflow, weight of its contacts
+  std::vector<double> weights(contacts.size(), 0.0);
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const auto& [pore, face, boundary] = contacts[c];
+    if (!carries(built, solution, contacts[c])) continue;
+    at_boundary[pore] = 1;
+    if (!built.share.owns_pore(pore) || unknowns.of_boundary[boundary] < 0) continue;
+    weights[c] = face == PoreBoundaries::inside ? 1.0 : std::abs(built.bases.area[c]);
+    sums[boundaries + boundary] += weights[c];
+  }
+  for (Eigen::Index b = 0; b < boundaries; ++b)
+    for (std::size_t pore = 0; pore < at_boundary.size() && unknowns.of_boundary[b] >= 0; ++pore)
+      if (unknowns.of_pore[pore] == unknowns.of_boundary[b] && !at_boundary[pore])
+        sums[b] += inflow[static_cast<Eigen::Index>(pore)];
+  built.share.add(sums);
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    if (weights[c] > 0.0) inflows[c] += sums[contacts[c].boundary] * weights[c] / sums[boundaries + contacts[c].boundary];
+}
+
 /// Flow rate (m³/s) into the box through each boundary contact.
 std::vector<double> contact_inflows(const BuiltNetwork& built, const Solution& solution,
                                     const Eigen::VectorXd& inflow) {
   const auto& contacts = built.boundaries.contacts;
-  const auto carries = [&](const PoreBoundaries::Contact& contact) {
-    // what a region brings in enters inside, also into a pore that touches a face
-    if (contact.boundary >= first_region(solution.container) &&
-        contact.face != PoreBoundaries::inside)
-      return false;
-    const Boundary& boundary = boundary_of(solution.container, contact.boundary);
-    const int unknown = built.unknowns.of_pore[contact.pore];
-    if (unknown == Unknowns::imposed) return boundary.imposes_pressure();
-    return boundary.imposes_flux() &&
-           built.unknowns.of_boundary[contact.boundary] == unknown;
-  };
   std::vector<double> result(contacts.size(), 0.0);
   for (std::size_t first = 0; first < contacts.size();) {
     std::size_t last = first;
     double area = 0.0;
     int open = 0;
     for (; last < contacts.size() && contacts[last].pore == contacts[first].pore; ++last)
-      if (carries(contacts[last])) {
+      if (carries(built, solution, contacts[last])) {
         area += std::abs(built.bases.area[last]);
         ++open;
       }
     // a pore on several open faces: by its base on each; where it has none to speak of, alike
     for (std::size_t c = first; c < last; ++c) {
-      if (!carries(contacts[c])) continue;
+      if (!carries(built, solution, contacts[c])) continue;
       if (contacts[c].face == PoreBoundaries::inside) result[c] = inflow[contacts[c].pore];
       else
         result[c] = inflow[contacts[c].pore] *
@@ -47,6 +74,7 @@ std::vector<double> contact_inflows(const BuiltNetwork& built, const Solution& s
     }
     first = last;
   }
+  add_inflows_of_joined(built, solution, inflow, result);
   return result;
 }
 

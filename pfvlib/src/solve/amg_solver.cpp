@@ -128,6 +128,7 @@ void AmgSolver::solve_system(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     return;
   }
   Eigen::VectorXd own = b;
+  rows_->collect(own);
   const Eigen::VectorXd at_borders = borders_.take_out(own, *rows_);
   for (int row = 0; row < size(); ++row)
     if (!rows_->own[row]) own[row] = 0.0;

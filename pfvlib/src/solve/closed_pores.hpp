@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "network/spheres.hpp"
+#include "parallel/share.hpp"
 #include "physics/throats.hpp"
 #include "pfv/network.hpp"
 #include "solve/pressure_system.hpp"
+#include "solve/row_share.hpp"
 
 #include <vector>
 
@@ -16,8 +19,11 @@ struct ClosedPores {
   int joined = 0;    ///< cut off otherwise, at a body: they share the unknown of the pore behind their widest facet
 };
 
-/// Renumbers the unknowns and closes the throats of enclosed pores. `body`: of each sphere, -1 for none.
-ClosedPores take_out_closed_pores(const PoreNetwork& network, const Throats& throats, const std::vector<int>& body,
+/// Renumbers the unknowns and closes the throats of enclosed pores. `body`: of each sphere, -1 for none. Of several ranks
+/// (`rows`: as the unknowns are before) each comes to know the ways out of all that is cut off, some 0.1 kB each.
+/// Collective there.
+ClosedPores take_out_closed_pores(const PoreNetwork& network, const Throats& throats, const Spheres& vertices,
+                                  const std::vector<int>& body, const Share& share, const RowShare* rows,
                                   std::vector<double>& conductances, Unknowns& unknowns);
 
 }  // namespace pfv

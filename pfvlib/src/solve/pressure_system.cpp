@@ -222,6 +222,7 @@ PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& c
     }
   }
   system.matrix = compress(off_diagonal, diagonal);
+  if (rows) collect_rows(system.matrix, *rows);
   return system;
 }
 

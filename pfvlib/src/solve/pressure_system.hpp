@@ -8,6 +8,7 @@
 #include "solve/linear_solver.hpp"
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct Unknowns {
   std::vector<int> fed_by;       ///< of a boundary with such an unknown, the pore where its flux counts; -1 on other ranks
   std::vector<int> imposed_pores;  ///< those of imposed pressure
   std::vector<int> enclosed_pores;  ///< within rigid bodies: neither (solve/closed_pores.hpp)
+  /// One that pores share on whatever ranks they are: who has its row, and what all know it by.
+  struct Shared {
+    int unknown, owner;
+    std::int64_t name;
+  };
+  std::vector<Shared> shared;
   int count = 0;
 };
 

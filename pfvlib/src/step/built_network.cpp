@@ -58,7 +58,7 @@ Spheres own_grains(const BuiltNetwork& built) {
 }
 
 Eigen::Matrix3Xd unknown_places(const BuiltNetwork& built) {
-  Eigen::Matrix3Xd places(3, built.unknowns.count);
+  Eigen::Matrix3Xd places = Eigen::Matrix3Xd::Zero(3, built.unknowns.count);
   for (int p = 0; p < built.network.pores(); ++p) {
     const int unknown = built.unknowns.of_pore[p];
     if (unknown != Unknowns::imposed) places.col(unknown) = built.network.pore_centres.col(p);

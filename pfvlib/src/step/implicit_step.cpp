@@ -32,7 +32,7 @@ void ImplicitStep::find(const StepTask& task, Solution& solution) {
   check_dynamics(task);
   solution.implicit = true;
   set_motion(built, problem, packing, solution.motion);
-  check_bodies(dynamics->bodies, built.grains.held);
+  check_bodies(dynamics->bodies, built);
   take_bodies(built, problem, dynamics->bodies);
   ForcedMotion forced{solution.motion, {}, yielding_of(built, problem, *dynamics, theta * solution.dt), bodies_of(built)};
   solution.moving = !at_rest(packing, problem.container, problem.options.torques) ||

@@ -4,6 +4,7 @@
 #include "pfv/error.hpp"
 #include "step/forces.hpp"
 #include "step/operators.hpp"
+#include "text/number_text.hpp"
 
 #include <cmath>
 
@@ -45,7 +46,6 @@ namespace {
 
 void check_body(const RigidBody& body, int number, Eigen::Index spheres) {
   const std::string name = "rigid body " + std::to_string(number);
-  if (spheres == 0) throw InputError(name + ": it holds no sphere of the packing; leave it away");
   if (body.arms.cols() != spheres)
     throw InputError(name + ": it has " + std::to_string(body.arms.cols()) + " arms for " + std::to_string(spheres) +
                      " spheres; give one for each sphere of the packing that it holds");
@@ -59,7 +59,18 @@ void check_body(const RigidBody& body, int number, Eigen::Index spheres) {
 
 }  // namespace
 
-void check_bodies(const std::vector<RigidBody>& bodies, const Eigen::VectorXi& held) {
+namespace {
+
+/// Of each sphere that this rank has in its packing its body, or -1.
+Eigen::Map<const Eigen::VectorXi> held_here(const BuiltNetwork& built) {
+  const Eigen::VectorXi& held = built.grains.held;
+  return {held.data(), built.halo && held.size() > 0 ? built.halo->own_count() : held.size()};
+}
+
+}  // namespace
+
+void check_bodies(const std::vector<RigidBody>& bodies, const BuiltNetwork& built) {
+  const auto held = held_here(built);
   std::vector<Eigen::Index> spheres(bodies.size(), 0);
   for (Eigen::Index k = 0; k < held.size(); ++k) {
     if (held[k] < 0) continue;
@@ -69,13 +80,23 @@ void check_bodies(const std::vector<RigidBody>& bodies, const Eigen::VectorXi& h
                        "Packing::bodies");
     ++spheres[held[k]];
   }
-  for (std::size_t b = 0; b < bodies.size(); ++b) check_body(bodies[b], static_cast<int>(b), spheres[b]);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (spheres[b] == 0 && !built.share.ranks)
+      throw InputError("rigid body " + std::to_string(b) + ": it holds no sphere of the packing; leave it away");
+    check_body(bodies[b], static_cast<int>(b), spheres[b]);
+  }
 }
 
 void take_bodies(BuiltNetwork& built, const Problem& problem, const std::vector<RigidBody>& bodies) {
-  if (built.grains.held.size() == 0 || built.operators.bodies) return;
-  built.operators.bodies =
-      rigid_bodies(built.grains.held, built.grains.columns, problem.container.face_count(), bodies);
+  if (!built.grains.any_bodies || built.operators.bodies) return;
+  const double most = built.share.largest(static_cast<double>(bodies.size()));
+  built.share.together([&] {
+    if (static_cast<double>(bodies.size()) != most)
+      throw InputError("the ranks give " + std::to_string(bodies.size()) + " and " + detail::number_text(most) +
+                       " rigid bodies; each gives all of them, with the arms of the spheres that it has");
+  });
+  built.operators.bodies = rigid_bodies(held_here(built), built.grains.columns, problem.container.face_count(), bodies);
+  built.operators.bodies->ranks = built.share.ranks;
 }
 
 const RigidBodies* bodies_of(const BuiltNetwork& built) {
@@ -171,25 +192,26 @@ namespace {
 Loads held_by_bodies(const StepTask& task, const RigidBodies& bodies) {
   const GrainDynamics& dynamics = *task.dynamics;
   const ActiveGrains& grains = task.built.grains;
-  Loads held(6, bodies.count());
+  Loads held = Loads::Zero(6, bodies.count());
   const auto add = [&](int b, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
     held.col(b).head<3>() += force;
     held.col(b).tail<3>() += bodies.axes[b].transpose() * torque;
   };
-  held.setZero();
-  for (int b = 0; b < bodies.count(); ++b) add(b, dynamics.bodies[b].other_force, dynamics.bodies[b].other_torque);
   std::vector<Eigen::Index> seen(bodies.count(), 0);
   std::size_t next = 0;
-  for (int k = 0; k < grains.held.size(); ++k) {
+  const auto of_sphere = held_here(task.built);
+  for (int k = 0; k < of_sphere.size(); ++k) {
     const bool active = next < grains.columns.size() && grains.columns[next] == k;
     next += active;
-    const int b = grains.held[k];
+    const int b = of_sphere[k];
     if (b < 0) continue;
     const Eigen::Vector3d arm = dynamics.bodies[b].arms.col(seen[b]++), force = dynamics.other_forces.col(k);
     if (active) continue;
     add(b, force, arm.cross(force));
     if (dynamics.other_torques.cols() > 0) add(b, Eigen::Vector3d::Zero(), dynamics.other_torques.col(k));
   }
+  if (bodies.ranks) bodies.ranks->add(held.data(), static_cast<std::size_t>(held.size()));
+  for (int b = 0; b < bodies.count(); ++b) add(b, dynamics.bodies[b].other_force, dynamics.bodies[b].other_torque);
   return held;
 }
 

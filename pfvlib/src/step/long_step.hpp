@@ -26,9 +26,10 @@ Eigen::Index own_count(const StepTask& task);
 /// Throws InputError for masses and forces that are missing or make no sense.
 void check_dynamics(const StepTask& task);
 
-/// Throws InputError where these are not the bodies that hold the packing's spheres, or make no sense.
-void check_bodies(const std::vector<RigidBody>& bodies, const Eigen::VectorXi& held);
-/// Takes up how spheres go along with the bodies, once a network: the rows of S are those of its instant, too.
+/// Throws InputError where these are not the bodies that hold this rank's spheres, or make no sense.
+void check_bodies(const std::vector<RigidBody>& bodies, const BuiltNetwork& built);
+/// Takes up how spheres go along with the bodies, once a network: the rows of S are those of its instant, too. Throws
+/// InputError where ranks give different ones. Collective.
 void take_bodies(BuiltNetwork& built, const Problem& problem, const std::vector<RigidBody>& bodies);
 /// Those taken up, or null.
 const RigidBodies* bodies_of(const BuiltNetwork& built);

@@ -78,10 +78,13 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Probl
     refuse_open_pores(*fresh);
   }
   fresh->unknowns = number_unknowns(fresh->network, fresh->boundaries, problem.container, share);
-  if (share.ranks) fresh->rows = share_rows(fresh->unknowns, share);
-  if (!fresh->grains.body.empty())
-    fresh->closed = take_out_closed_pores(fresh->network, fresh->throats, fresh->grains.body,
-                                          fresh->conductances.value, fresh->unknowns);
+  const auto rows = [&] { return share_rows(fresh->network, fresh->conductances.value, fresh->unknowns, share); };
+  if (share.ranks) fresh->rows = rows();
+  if (fresh->grains.any_bodies) {
+    fresh->closed = take_out_closed_pores(fresh->network, fresh->throats, fresh->vertices, fresh->grains.body, share,
+                                          fresh->rows.get(), fresh->conductances.value, fresh->unknowns);
+    if (share.ranks) fresh->rows = rows();
+  }
   for (const int pore : fresh->unknowns.enclosed_pores)
     fresh->throats.pore_volume[pore] = fresh->throats.pore_fluid_volume[pore] = 0.0;
   return fresh;

@@ -90,7 +90,7 @@ void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& co
                      built.grains.spheres.size(), {true, false, false}, *problem.team);
   if (problem.options.shear_viscous && !built.operators.shear_pairs) {
     built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.grains.spheres, built.vertices);
-    if (!built.grains.body.empty()) drop_pairs_within(*built.operators.shear_pairs, built.grains.body);
+    if (built.grains.any_bodies) drop_pairs_within(*built.operators.shear_pairs, built.grains.body);
   }
   if (!built.operators.open_water || built.operators.still_water != is_still(problem.container)) {
     find_open_water(built, problem);

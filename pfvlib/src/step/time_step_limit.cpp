@@ -97,7 +97,7 @@ Eigen::VectorXd all_masses(const BuiltNetwork& built, Eigen::Index spheres, int 
     if (masses.size() != spheres)
       throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
                        std::to_string(spheres) + " spheres; give one a sphere");
-    check_bodies(bodies, built.grains.held);
+    check_bodies(bodies, built);
     all.head(spheres) = masses;
     all.tail(all.size() - spheres - faces) = yielding_of_bodies(bodies, 1.0).reshaped();
     for (int f = 0; f < faces; ++f) all[spheres + f] = piston_of(pistons, f).mass;

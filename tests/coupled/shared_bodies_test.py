@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rigid bodies and obstacles with the flow on all ranks: what one rank finds."""
+import unittest
+
+from bodies_test import CREATE, GRAVITY, HEAD, INSERT, VOLUME
+from coupled import CoupledTest, dump, forces, largest_difference, packing, random_velocities, read_dump, read_thermo
+from coupled import restarted_head, write_data
+from obstacles_test import FLOW, MIDDLE, PADDLE, THERMO, TURN, WATER
+from plates import write_mesh
+from scene_meshes import plate
+
+SHARED = "solver amg tolerance 1e-11 ranks all"
+ALONE = SHARED.replace("all", "one")
+WALLS = ("face xlo plane 0.0 face xhi plane 0.1 face ylo plane 0.0 face yhi plane 0.1 "
+         "face zlo plane 0.0 face zhi plane 0.1 pressure 0")
+
+
+def where(ranks):
+    return SHARED if ranks > 1 else ALONE
+
+
+class SharedObstacles(CoupledTest):
+    def setUp(self):
+        super().setUp()
+        grains = [g for g in packing(6) if not (abs(g[2] - MIDDLE) < g[4] + 1e-3 and abs(g[1] - MIDDLE) < 0.03
+                                                and abs(g[3] - MIDDLE) < 0.03)]
+        write_data(self.folder, grains, random_velocities(grains))
+        write_mesh(self.folder / "paddle.stl", plate(1, 0.025, (MIDDLE, MIDDLE, MIDDLE)))
+
+    def fix(self, ranks, words="", fluid=FLOW):
+        return f"fix flow all pfv {fluid} obstacle mesh pad {words} {where(ranks)}\n"
+
+    def turned(self, ranks, words=""):
+        """(rows of thermo, {step: forces}) of a paddle that turns among the grains."""
+        said = self.liggghts("include in.packing\n" + PADDLE + TURN + self.fix(ranks, words) + THERMO + dump("d.dump") +
+                             "run 20\n", ranks=ranks)
+        self.assertEqual("shared by" in said, ranks > 1)
+        return read_thermo((self.folder / "log.liggghts").read_text()), read_dump(self.folder / "d.dump")
+
+    def test_a_paddle_that_turns_feels_what_it_feels_on_one_rank(self):
+        for words in ("torques yes", "coupling staged"):
+            rows, steps = self.turned(1, words)
+            scale = max(abs(rows[-1][f"flow[{n}]"]) for n in (11, 12, 13))
+            for ranks in (2, 4):
+                others, grains = self.turned(ranks, words)
+                for row, other in zip(rows[1:], others[1:], strict=True):
+                    for n in range(11, 17):
+                        self.assertAlmostEqual(other[f"flow[{n}]"], row[f"flow[{n}]"], delta=1e-8 * scale)
+                    for n in range(1, 4):  # the mesh's own account
+                        self.assertAlmostEqual(other[f"pad[{n}]"], other[f"flow[{10 + n}]"], delta=1e-12 * scale)
+                    self.assertEqual(other["flow[8]"], row["flow[8]"])
+                    self.assertLess(abs(other["flow[3]"]), 1e-9)
+                    self.assertLess(other["flow[4]"], 1e-12)
+                for step, of_step in grains.items():
+                    self.assertLess(largest_difference(forces(of_step), forces(steps[step])), 1e-8)
+
+    def test_a_restart_goes_on_with_the_same_spheres(self):
+        head = "include in.packing\n" + PADDLE + TURN
+        self.liggghts(head + self.fix(3, "couple_every 2", WATER) + "run 11\nwrite_restart file.restart\n" + dump("on.dump") +
+                      "run 10\n", ranks=3)
+        start = restarted_head() + PADDLE + TURN
+        self.liggghts(start + self.fix(3, "couple_every 2", WATER) + dump("again.dump") + "run 10\n", ranks=3)
+        self.assertEqual((self.folder / "on.dump").read_bytes(), (self.folder / "again.dump").read_bytes())
+        expected = read_dump(self.folder / "on.dump")
+        for ranks in (1, 2):
+            self.liggghts(start + self.fix(ranks, "couple_every 2", WATER) + dump("other.dump") + "run 10\n", ranks=ranks)
+            for step, rows in read_dump(self.folder / "other.dump").items():
+                self.assertLess(largest_difference(forces(rows), forces(expected[step])), 1e-7)
+
+
+class SharedClumps(CoupledTest):
+    """Pairs of fix multisphere, which lie across the parts of ranks and of LIGGGHTS."""
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "body.txt").write_text("-0.005 0 0 0.01\n0.005 0 0 0.01\n")
+        insert = INSERT.replace("particles_in_region 1", "particles_in_region 24")
+        self.liggghts(HEAD.format(start=CREATE, step=1e-5) + insert.format(
+            mass=1000 * VOLUME, speed=-0.05, orientation="random", place="0.01 0.09 0.01 0.09 0.01 0.09"))
+
+    def script(self, ranks, words, restart="body.restart", step=1e-5):
+        grid = "processors * 1 1", "processors 1 1 *" if ranks > 2 else "processors * 1 1"
+        flow = GRAVITY + f"fix flow all pfv density 500 {WALLS} couple_every 1 {words} {where(ranks)}\n"
+        return (HEAD.format(start=f"read_restart {restart}", step=step).replace(*grid) + flow +
+                "fix move all multisphere\n" + dump("d.dump") +
+                "thermo_style custom step f_flow[3] f_flow[4] f_flow[6] f_flow[8]\nthermo_modify norm no format float %.15g\n"
+                "thermo 1\n")
+
+    def run_on(self, ranks, words, commands="run 10\n", **options):
+        self.liggghts(self.script(ranks, words, **options) + commands, ranks=ranks)
+        return read_thermo((self.folder / "log.liggghts").read_text()), read_dump(self.folder / "d.dump")
+
+    def compare(self, found, expected, within):
+        rows, steps = expected
+        for row, other in zip(rows, found[0], strict=True):
+            self.assertEqual(other["flow[8]"], row["flow[8]"])
+            self.assertAlmostEqual(other["flow[6]"] / row["flow[6]"], 1, delta=5e-3)
+            self.assertLess(abs(other["flow[3]"]), 1e-9)
+            self.assertLess(other["flow[4]"], 1e-12)
+        for step, grains in found[1].items():
+            self.assertLess(largest_difference(forces(grains), forces(steps[step])), within)
+
+    def test_clumps_move_as_on_one_rank(self):
+        for words in ("viscosity 0.1 torques yes retriangulate 1e-3", "viscosity 2000 coupling staged shear_viscous yes"):
+            expected = self.run_on(1, words)
+            self.assertEqual(len(expected[1][max(expected[1])]), 48)
+            for ranks in (2, 4):
+                with self.subTest(words=words, ranks=ranks):
+                    self.compare(self.run_on(ranks, words), expected, 1e-7)
+
+    def test_the_same_bytes_twice_and_a_restart(self):
+        words = "viscosity 0.1 bulk_modulus 1e5 coupling auto"
+        found = []
+        for _ in range(2):
+            self.run_on(3, words, "run 5\nwrite_restart half.restart\nrun 5\n")
+            found.append((self.folder / "d.dump").read_bytes())
+        self.assertEqual(*found)
+        steps = read_dump(self.folder / "d.dump")
+        for ranks in (1, 2, 3):
+            again = self.run_on(ranks, words, "run 5\n", restart="half.restart")[1]
+            last = max(again)
+            difference = largest_difference(forces(again[last]), forces(steps[last]))
+            self.assertLess(difference, 1e-7)
+            if ranks == 3:
+                self.assertEqual(difference, 0.0)
+
+
+if __name__ == "__main__":
+    unittest.main()
