@@ -283,17 +283,18 @@ void add_bench_options(CLI::App& command, BenchArguments& arguments) {
   command.add_option("--spheres", arguments.sizes, "sizes of the packings, ascending")
       ->delimiter(',')
       ->capture_default_str();
-  command.add_option("--solver", arguments.solvers, "solvers to compare")
+  command.add_option("--solver", arguments.solvers, "solvers to compare: " + names_of<SolverKind>())
       ->delimiter(',')
       ->capture_default_str();
-  command.add_option("--ordering", arguments.ordering, "ordering of the direct solver")
+  command.add_option("--ordering", arguments.ordering, "ordering of the direct solver: " + names_of<OrderingKind>())
       ->capture_default_str();
   const Options defaults;
   arguments.conductance = name_of(defaults.conductance);
   arguments.precision = name_of(defaults.precision);
-  command.add_option("--conductance", arguments.conductance, "conductance law")
+  command.add_option("--conductance", arguments.conductance, "conductance law: " + names_of<ConductanceLaw>())
       ->capture_default_str();
-  command.add_option("--precision", arguments.precision, "how supernodal keeps its factor")
+  command.add_option("--precision", arguments.precision,
+                     "how supernodal keeps its factor: " + names_of<Precision>())
       ->capture_default_str();
   command.add_option("--threads", arguments.threads, "threads that share a rebuild or step")
       ->capture_default_str();

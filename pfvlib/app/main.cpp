@@ -39,7 +39,7 @@ struct Commands {
   pfv::app::ConvertArguments convert_arguments;
   pfv::app::BenchArguments bench_arguments;
   pfv::app::TimeStepArguments time_step_arguments;
-  bool of_fix = false;
+  bool of_fix = false, of_solvers = false;
 
   Commands() {
     app.set_version_flag("--version", version_line);
@@ -55,7 +55,8 @@ struct Commands {
     pfv::app::add_convert_options(*convert, convert_arguments);
     pfv::app::add_bench_options(*bench, bench_arguments);
     pfv::app::add_time_step_options(*time_step, time_step_arguments);
-    settings->add_flag("--fix", of_fix, "the keywords of fix pfv instead, as its page has them");
+    CLI::Option* fix = settings->add_flag("--fix", of_fix, "the keywords of fix pfv instead, as its page has them");
+    settings->add_flag("--solvers", of_solvers, "what each solver is made of and can do instead")->excludes(fix);
     add_examples();
   }
 
@@ -111,7 +112,7 @@ int carry_out(const Commands& commands, const std::string& words) {
   else if (commands.time_step->parsed())
     time_step(commands.time_step_arguments, std::cout, std::cerr);
   else if (commands.settings->parsed())
-    commands.of_fix ? write_fix_syntax(std::cout) : write_settings(std::cout);
+    (commands.of_fix ? write_fix_syntax : commands.of_solvers ? write_solver_table : write_settings)(std::cout);
   else
     solve_on_ranks(commands.solve_arguments, words);
   return succeeded;

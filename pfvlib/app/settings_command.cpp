@@ -3,6 +3,7 @@
 
 #include "problem/solver_abilities.hpp"
 #include "solve_arguments.hpp"
+#include "text/number_text.hpp"
 
 #include <ostream>
 
@@ -62,6 +63,20 @@ void write_row(const Setting& setting, std::ostream& out) {
       << " | " << cell(setting.help) << " |\n";
 }
 
+constexpr const char* none = "–";
+
+const char* code(const char* name) { return name ? name : none; }
+
+/// "geometric (`auto`), metis, amd"
+std::string orderings_of(const SolverAbilities& solver) {
+  const bool has_own = solver.own_ordering != OrderingKind::automatic;
+  if (!solver.takes_orderings) return has_own ? name_of(solver.own_ordering) + std::string(" (its own)") : none;
+  std::string text = name_of(solver.own_ordering) + std::string(" (`auto`)");
+  for (const auto& one : Names<OrderingKind>::all)
+    if (one.value != OrderingKind::automatic && one.value != solver.own_ordering) text += std::string(", ") + one.name;
+  return text;
+}
+
 }  // namespace
 
 void write_settings(std::ostream& out) {
@@ -89,6 +104,22 @@ void write_fix_syntax(std::ostream& out) {
     if (is_model) out << ' ' << setting_named("cells")->values;
     is_model ? write_grid_syntax(out) : void(out << '\n');
     out << "  " << explanation(setting) << '\n';
+  }
+}
+
+void write_solver_table(std::ostream& out) {
+  out << "| `--solver` | symbolic factorisation | factorisation, or preconditioner | solves | `--ordering` | `--tolerance` | "
+         "threads share it | rebuilds in the background | mixed precision | implicit steps |\n"
+         "|--|--|--|--|--|--|--|--|--|--|\n";
+  const auto yes_or_no = [](bool ability) { return ability ? "yes" : "no"; };
+  for (const SolverAbilities& solver : Names<SolverKind>::all) {
+    if (solver.value == SolverKind::automatic) continue;
+    out << "| `" << solver.name << '`' << (resolved(SolverKind::automatic) == solver.value ? " (`auto`)" : "") << " | "
+        << code(solver.analysed) << " | " << code(solver.factored) << " | " << solver.solved << " | " << orderings_of(solver)
+        << " | " << (solver.is_iterative ? detail::number_text(solver.tolerance) : none);
+    for (const bool ability : {solver.shares_work, solver.factors_beside_steps, solver.mixed_precision, solver.implicit_steps})
+      out << " | " << yes_or_no(ability);
+    out << " |\n";
   }
 }
 

@@ -11,4 +11,7 @@ void write_settings(std::ostream& out);
 /// Writes the settings of fix pfv in the form of LIGGGHTS' pages, a block of doc/fix_pfv.md.
 void write_fix_syntax(std::ostream& out);
 
+/// Writes what each solver is made of and can do, a table of doc/solvers.md.
+void write_solver_table(std::ostream& out);
+
 }  // namespace pfv::app

@@ -262,9 +262,9 @@ void add_settings(CLI::App& command, SolveArguments& arguments, const std::vecto
   for (const std::string& name : names) {
     const Setting& setting = *setting_named(name);
     std::vector<std::string>& words = arguments.settings[name];
-    if (setting.words == 0)
-      command.add_flag_callback(option_of(setting), [&words] { words = {"yes"}; }, help_of(setting))
-          ->group(setting.group);
+    if (setting.words == 0)  // without a word yes, as a flag
+      command.add_option(option_of(setting), words, help_of(setting))
+          ->expected(0, 1)->default_str("yes")->option_text('[' + setting.values + ']')->group(setting.group);
     else
       command.add_option(option_of(setting), words, help_of(setting))
           ->type_size(setting.words)->expected(1)->option_text(setting.values)->group(setting.group);

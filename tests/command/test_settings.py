@@ -30,12 +30,38 @@ class Settings(CommandTest):
             if fix.startswith("*"):
                 self.assertIn(f"\n{name} values = ", "\n" + syntax)
 
+    def test_the_page_of_the_solvers_has_what_the_command_prints(self):
+        table = self.run_pfv("settings", "--solvers").stdout
+        block = "<!-- made by: pfv settings --solvers -->\n" + table + "\n"
+        self.assertTrue(block in (DOC / "solvers.md").read_text(), "out of date: pfv settings --solvers")
+        [choices] = [values.split("\\|") for name, values, *_ in self.rows() if name == "solver"]
+        self.assertEqual(["auto", *re.findall(r"^\| `(\w+)`", table, re.MULTILINE)], choices)
+
     def test_the_help_has_each_option_with_its_default(self):
         text = self.run_pfv("solve", "--help").stdout
         for name, _, _, default, _, option, *_ in self.rows():
             if option:
                 entry = text.split("  --" + name.replace("_", "-") + " ")[1].split("\n  --")[0]
                 self.assertIn(f"(default {default})", " ".join(entry.split()))
+
+    def test_the_help_of_bench_names_what_can_be_chosen(self):
+        text = " ".join(self.run_pfv("bench", "--help").stdout.split())
+        choices = {name: values.split("\\|") for name, values, *_ in self.rows()}
+        for name in ("solver", "ordering", "conductance", "precision"):
+            self.assertGreater(len(choices[name]), 1)
+            self.assertIn(": " + ", ".join(choices[name]), text)
+
+    def test_what_is_on_or_off_is_said_by_yes_no_or_the_option_alone(self):
+        packing = self.write("two.csv", "id,x,y,z,radius,vx,vy,vz\n1,.5,.5,.5,.01,0,0,1\n2,.4,.5,.4,.01,0,0,1\n")
+        braked = {words: self.report("--face", "zhi:pressure=0", *words, packing=packing)["counts"]["open_water"]
+                  for words in ((), ("--open-water",), ("--open-water", "yes"), ("--open-water", "no"), ("--open-water=no",))}
+        self.assertEqual(list(braked.values()), [2, 2, 2, 0, 0])
+        geometric = ["solve", "--packing", DENSE, *UNIT_BOX, *THROUGH_FLOW, "--volume-rates", "geometric"]
+        for words in (["--torques"], ["--torques", "yes"]):
+            self.assert_refused(self.run_pfv(*geometric, *words), "torques go with reciprocal")
+        self.assertEqual(self.run_pfv(*geometric, "--torques", "no").returncode, 0)
+        for words in (["--torques", "maybe"], ["--torques", "--torques", "no"]):
+            self.assert_refused(self.run_pfv(*geometric, *words), "torques")
 
     def test_a_setting_that_is_not_read_is_refused_at_its_default_too(self):
         grid = ["--model", "darcy_grid", "--cells", "2", "2", "2"]
