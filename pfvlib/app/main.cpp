@@ -39,7 +39,7 @@ struct Commands {
   pfv::app::ConvertArguments convert_arguments;
   pfv::app::BenchArguments bench_arguments;
   pfv::app::TimeStepArguments time_step_arguments;
-  bool of_fix = false, of_solvers = false;
+  bool of_fix = false, of_solvers = false, of_python = false;
 
   Commands() {
     app.set_version_flag("--version", version_line);
@@ -56,7 +56,10 @@ struct Commands {
     pfv::app::add_bench_options(*bench, bench_arguments);
     pfv::app::add_time_step_options(*time_step, time_step_arguments);
     CLI::Option* fix = settings->add_flag("--fix", of_fix, "the keywords of fix pfv instead, as its page has them");
-    settings->add_flag("--solvers", of_solvers, "what each solver is made of and can do instead")->excludes(fix);
+    CLI::Option* solvers = settings->add_flag("--solvers", of_solvers, "what each solver is made of and can do instead");
+    CLI::Option* python = settings->add_flag("--python", of_python, "the keywords of the Python module's stub instead");
+    solvers->excludes(fix);
+    python->excludes(fix)->excludes(solvers);
     add_examples();
   }
 
@@ -112,7 +115,10 @@ int carry_out(const Commands& commands, const std::string& words) {
   else if (commands.time_step->parsed())
     time_step(commands.time_step_arguments, std::cout, std::cerr);
   else if (commands.settings->parsed())
-    (commands.of_fix ? write_fix_syntax : commands.of_solvers ? write_solver_table : write_settings)(std::cout);
+    (commands.of_fix       ? write_fix_syntax
+     : commands.of_solvers ? write_solver_table
+     : commands.of_python  ? write_python_keywords
+                           : write_settings)(std::cout);
   else
     solve_on_ranks(commands.solve_arguments, words);
   return succeeded;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "settings_command.hpp"
 
+#include "pfv/box.hpp"
 #include "problem/solver_abilities.hpp"
 #include "solve_arguments.hpp"
 #include "text/number_text.hpp"
 
+#include <cctype>
 #include <ostream>
+#include <sstream>
 
 namespace pfv::app {
 namespace {
@@ -77,6 +80,38 @@ std::string orderings_of(const SolverAbilities& solver) {
   return text;
 }
 
+/// Whether its number has to be a whole one: a half is refused.
+bool is_whole(const Setting& setting) {
+  Settings settings;
+  Words halves(std::vector<std::string>(static_cast<std::size_t>(setting.words), "0.5"), setting.name);
+  try {
+    setting.read(settings, halves);
+    return false;
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
+/// The type of a keyword in Python, by how its value is written.
+std::string python_type(const Setting& setting) {
+  if (setting.words == 0) return "bool";
+  const std::string number = is_whole(setting) ? "int" : "float";
+  if (setting.words > 1) return number == "int" ? "Sequence[int]" : "ArrayLike";
+  if (setting.values.find(' ') != std::string::npos) return number + " | str";
+  const bool takes_number = setting.values.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") != std::string::npos;
+  std::string type = takes_number ? number : "", words;
+  std::istringstream values(setting.values);
+  for (std::string value; std::getline(values, value, '|');)
+    if (std::islower(static_cast<unsigned char>(value[0]))) words += (words.empty() ? "\"" : ", \"") + value + '"';
+  if (!words.empty()) type = "Literal[" + words + "]" + (takes_number ? " | " + number : "");
+  return type + (setting.text(Settings{}) == "none" ? " | None" : "");
+}
+
+std::string python_type(const BoundaryKind& kind) {
+  if (!kind.symbol) return "bool";
+  return kind.kind == Boundary::Kind::pressure ? "_Pressure" : "float";
+}
+
 }  // namespace
 
 void write_settings(std::ostream& out) {
@@ -121,6 +156,26 @@ void write_solver_table(std::ostream& out) {
       out << " | " << yes_or_no(ability);
     out << " |\n";
   }
+}
+
+void write_python_keywords(std::ostream& out) {
+  const char* const between = " = ...,\n                 ";
+  out << "# SPDX-License-Identifier: GPL-3.0-or-later\n"
+         "# made by: pfv settings --python\n"
+         "set(PFV_BOUNDARIES [==[";
+  const char* before = "";
+  for (const BoundaryKind& kind : boundary_kinds) {
+    out << before << kind.name << ": " << python_type(kind);
+    before = between;
+  }
+  out << " = ...]==])\nset(PFV_SETTINGS [==[";
+  before = "";
+  for (const Setting& setting : all_settings()) {
+    if (!setting.hosts.python) continue;
+    out << before << setting.name << ": " << python_type(setting);
+    before = between;
+  }
+  out << " = ...]==])\n";
 }
 
 }  // namespace pfv::app

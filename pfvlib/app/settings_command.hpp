@@ -14,4 +14,7 @@ void write_fix_syntax(std::ostream& out);
 /// Writes what each solver is made of and can do, a table of doc/solvers.md.
 void write_solver_table(std::ostream& out);
 
+/// Writes boundaries and settings as the Python module's keywords with their types, for its stub: keywords.cmake.
+void write_python_keywords(std::ostream& out);
+
 }  // namespace pfv::app

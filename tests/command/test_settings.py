@@ -6,7 +6,9 @@ import unittest
 
 from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest
 
-DOC = pathlib.Path(__file__).resolve().parents[2] / "doc"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOC = ROOT / "doc"
+KEYWORDS = ROOT / "pfvlib/python/keywords.cmake"
 
 
 class Settings(CommandTest):
@@ -36,6 +38,11 @@ class Settings(CommandTest):
         self.assertTrue(block in (DOC / "solvers.md").read_text(), "out of date: pfv settings --solvers")
         [choices] = [values.split("\\|") for name, values, *_ in self.rows() if name == "solver"]
         self.assertEqual(["auto", *re.findall(r"^\| `(\w+)`", table, re.MULTILINE)], choices)
+
+    def test_the_stub_of_the_python_module_has_what_the_command_prints(self):
+        keywords = self.run_pfv("settings", "--python").stdout
+        self.assertEqual(keywords, KEYWORDS.read_text(),
+                         f"out of date: pfv settings --python > {KEYWORDS.relative_to(ROOT)}")
 
     def test_the_help_has_each_option_with_its_default(self):
         text = self.run_pfv("solve", "--help").stdout

@@ -12,8 +12,6 @@ STUB = ast.parse((pathlib.Path(pfv.__file__).parent / "__init__.pyi").read_text(
 CLASSES = {node.name: node for node in STUB.body if isinstance(node, ast.ClassDef)}
 FUNCTIONS = {node.name: node for node in STUB.body if isinstance(node, ast.FunctionDef)}
 TYPED_DICTS = {name for name, node in CLASSES.items() if [ast.unparse(base) for base in node.bases] == ["TypedDict"]}
-CONDITIONS = ["pressure", "flux", "sealed", "wall", "velocity", "sliding", "spin", "pivot", "angular_velocity",
-              "may_bound_nothing"]
 
 
 def members(node):
@@ -24,6 +22,10 @@ def arguments(node):
     """Their names, in order."""
     every = [each.arg for each in node.args.posonlyargs + node.args.args + node.args.kwonlyargs]
     return [name for name in every if name != "self"]
+
+
+BOUNDARIES = arguments(members(CLASSES["Box"])["patch"])[2:]  # behind name and rectangle
+CONDITIONS = BOUNDARIES + ["wall", "velocity", "sliding", "spin", "pivot", "angular_velocity", "may_bound_nothing"]
 
 
 def arguments_of(function):
@@ -77,6 +79,27 @@ class Stubs(unittest.TestCase):
                         self.assertIn(repr(choice), types[row["name"]])
         fluid = arguments(members(CLASSES["Fluid"])["__init__"])
         self.assertTrue(set(fluid) < set(names))
+
+    def test_their_types_of_numbers(self):
+        node = members(CLASSES["Flow"])["__init__"]
+        types = {each.arg: ast.unparse(each.annotation) for each in node.args.kwonlyargs}
+        self.assertEqual([types[name] for name in ("viscosity", "threads", "cells", "gravity", "bulk_modulus", "retriangulate")],
+                         ["float", "int", "Sequence[int]", "ArrayLike", "float | None", "float | str"])
+        fluid = members(CLASSES["Fluid"])["__init__"].args.kwonlyargs
+        self.assertEqual({each.arg: ast.unparse(each.annotation) for each in fluid},
+                         {each.arg: types[each.arg] for each in fluid})
+
+    def test_boundaries_are_those_of_a_face(self):
+        self.assertGreaterEqual(len(BOUNDARIES), 3)
+        for kind in BOUNDARIES:
+            box = pfv.Box([[0, 1]] * 3).face("zlo", **{kind: 1.0})
+            self.assertIn(kind, box.faces["zlo"])
+        with self.assertRaisesRegex(pfv.InputError, "give one of "):
+            box.face("zlo", **{kind: 1.0 for kind in BOUNDARIES})
+        for name in ("Box", "Container"):
+            for member in ("face", "patch", "region"):
+                node = members(CLASSES[name])[member]
+                self.assertTrue(set(BOUNDARIES) <= set(arguments(node)), f"{name}.{member}")
 
     def test_everything_has_a_docstring(self):
         for name in pfv.__all__:
