@@ -65,6 +65,15 @@ class Errors(unittest.TestCase):
         self.assertEqual(self.refused("sphere 6", "velocity", call=flow.evaluate,
                                       velocities=np.where(np.arange(100)[:, None] == 6, np.nan, self.positions)).spheres, (6,))
 
+    def test_a_lattice_that_is_off_by_a_millionth_is_no_slender_cell(self):
+        lattice = (np.indices((5, 5, 5)).reshape(3, -1).T + 0.5) / 5
+        for seed in range(4):
+            positions = lattice + np.random.default_rng(seed).normal(size=lattice.shape) * 2e-7
+            try:
+                pfv.permeability(positions, np.full(125, 0.095), UNIT, periodic="xyz")
+            except pfv.InputError as error:
+                self.assertIn("cubic lattice", str(error))
+
     def test_culprits_are_ids(self):
         self.positions[5] = [2, 0.5, 0.5]
         self.assertEqual(self.refused("sphere 5", "not inside the box").spheres, (5,))
