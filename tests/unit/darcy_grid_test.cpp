@@ -42,6 +42,29 @@ pfv::PackingArrays moving(pfv::PackingArrays packing,
   return packing;
 }
 
+TEST(DarcyGrid, ALookIsAtGrainsAndFacesAsTheyAre) {
+  pfv::PackingArrays packing = support::random_packing(60, 0.02, 0.2, 7);
+  pfv::Box box = support::upward_box(Wall::symmetry);
+  DarcyOptions grid = grid_of(3, 3, 3);
+  grid.refresh_every = 100;
+  DarcyGrid flow(box, support::viscosity_one(), grid);
+  const auto expect_as_new = [&] {
+    DarcyGrid fresh(box, support::viscosity_one(), grid);
+    fresh.evaluate(packing.view());
+    flow.evaluate(packing.view());
+    EXPECT_TRUE(flow.cell_porosities() == fresh.cell_porosities());
+  };
+  expect_as_new();
+  packing.positions.row(0) *= 0.9;
+  expect_as_new();
+  packing.radii *= 0.8;
+  expect_as_new();
+  box.upper[2] = 1.2;
+  flow.set_box(box);
+  expect_as_new();
+  EXPECT_EQ(flow.retriangulations(), 3);
+}
+
 TEST(DarcyGrid, PorositiesAddUpToTheExactTotal) {
   const pfv::PackingArrays packing = support::random_packing(60, 0.02, 0.2, 7);
   const double solid = support::solid_volume(packing);

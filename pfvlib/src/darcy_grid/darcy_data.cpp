@@ -7,6 +7,7 @@
 #include "parallel/team.hpp"
 #include "pfv/error.hpp"
 #include "physics/time_step_limit.hpp"
+#include "problem/box_changes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,10 @@ const Forces& DarcyData::compute(const Packing& packing, double at_time, bool ad
   {
     const PhaseClock clock(work.seconds.total);
     solved = false;
-    if (needs_renewal(packing)) renew(packing);
+    if (needs_renewal(packing, advance)) renew(packing);
+    seen_places = packing.positions;
+    seen_radii = packing.radii;
+    seen_box = box;
     Eigen::Matrix3Xd velocities;
     gather_velocities(packing, built->grains.columns, velocities);
     last.moving = grid_options.grain_motion && !at_rest(packing, box);
@@ -67,9 +71,15 @@ void DarcyData::require_result() const {
                      "failed, or there was none)");
 }
 
-bool DarcyData::needs_renewal(const Packing& packing) const {
+bool DarcyData::was_seen(const Packing& packing) const {
+  return packing.positions == seen_places && packing.radii == seen_radii && same_shape(box, seen_box);
+}
+
+/// Steps have the porosity renewed when their number says so; a look at grains or faces that are elsewhere is at those.
+bool DarcyData::needs_renewal(const Packing& packing, bool advance) const {
   if (stale || !built || steps_since_renewal >= grid_options.refresh_every) return true;
   if (!same_grains(packing, box, packing_ids, built->grains.columns)) return true;
+  if (!advance && !was_seen(packing)) return true;
   return !packing.velocities.allFinite();  // leads to a renewal, whose checks name the sphere
 }
 

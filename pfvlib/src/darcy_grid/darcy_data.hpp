@@ -50,6 +50,10 @@ struct DarcyData {
 
   std::unique_ptr<BuiltGrid> built;
   std::vector<std::int64_t> packing_ids;
+  // at the last call
+  Eigen::Matrix3Xd seen_places;  // m
+  Eigen::VectorXd seen_radii;    // m
+  Container seen_box;
   std::unique_ptr<LinearSolver> solver;  ///< its ordering serves every renewal of the porosity
   bool stale = true;
   int steps_since_renewal = 0;
@@ -67,7 +71,8 @@ struct DarcyData {
   void require_result() const;
 
  private:
-  bool needs_renewal(const Packing& packing) const;
+  bool needs_renewal(const Packing& packing, bool advance) const;
+  bool was_seen(const Packing& packing) const;
   void renew(const Packing& packing);
   void factor();
   void update_rates();

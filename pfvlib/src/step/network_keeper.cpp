@@ -50,9 +50,12 @@ BuiltNetwork& NetworkKeeper::update(const Packing& packing, const Problem& probl
                                     const Wanted& wanted, WorkRecord& work,
                                     const TakenUp& taken_up) {
   if (!stale_ && built_ && built_->share.any(has_jumped(problem, wanted))) discard(true);
+  if (!stale_ && built_ && built_->share.any(grains_have_jumped(packing, problem, wanted))) discard(false);
   const bool kept = !stale_ && built_;
+  const std::int64_t before = rebuilds_;
   BuiltNetwork& built = renew(packing, problem, wanted, work, taken_up);
   if (wanted.advance && kept) jumps_.pass(problem.container, wanted.step);
+  if (wanted.advance || !kept || rebuilds_ != before) grain_jumps_.pass(packing, wanted.step);
   return built;
 }
 
@@ -155,6 +158,14 @@ bool NetworkKeeper::has_jumped(const Problem& problem, const Wanted& wanted) con
   if (radii.size() == 0) return false;
   const double smallest = radii.minCoeff(), strain = std::min(1.0, problem.options.retriangulation_strain);
   return jumps_.any(problem.container, wanted.step, wanted.advance ? smallest : strain * smallest, smallest);
+}
+
+/// A look at grains that are elsewhere, or a step in which they come to be there without a velocity.
+bool NetworkKeeper::grains_have_jumped(const Packing& packing, const Problem& problem, const Wanted& wanted) const {
+  const ActiveGrains& grains = built_->grains;
+  return packing.size() == packed() && std::equal(ids_.begin(), ids_.end(), packing.ids.data()) &&
+         grain_jumps_.any(packing, grains.columns, grains.spheres.lattice(), wanted.advance ? wanted.step : 0.0,
+                          std::min(1.0, problem.options.retriangulation_strain));
 }
 
 bool NetworkKeeper::has_moved_far(const Packing& packing, const Problem& problem) const {

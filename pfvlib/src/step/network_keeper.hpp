@@ -4,6 +4,7 @@
 #include "step/background_rebuild.hpp"
 #include "step/built_network.hpp"
 #include "step/face_jumps.hpp"
+#include "step/grain_jumps.hpp"
 #include "step/problem.hpp"
 #include "step/solution.hpp"
 #include "work/work_record.hpp"
@@ -88,6 +89,7 @@ class NetworkKeeper {
   BuiltNetwork& renew(const Packing& packing, const Problem& problem, const Wanted& wanted, WorkRecord& work,
                       const TakenUp& taken_up);
   bool has_jumped(const Problem& problem, const Wanted& wanted) const;
+  bool grains_have_jumped(const Packing& packing, const Problem& problem, const Wanted& wanted) const;
   bool is_outdated(const Packing& packing, const Problem& problem);
   bool has_moved_far(const Packing& packing, const Problem& problem) const;
   void rebuild_now(const Packing& packing, const Problem& problem, const Wanted& wanted,
@@ -104,6 +106,7 @@ class NetworkKeeper {
   std::optional<Next> next_;
   PoreStrain strain_;
   FaceJumps jumps_;
+  GrainJumps grain_jumps_;
   std::int64_t rebuilds_ = 0;
 };
 
