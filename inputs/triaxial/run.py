@@ -27,6 +27,7 @@ KEYS = {
     "STRAIN": (float, 0.12, "axial strain of the undrained tests"),
     "DRAINED": (float, 0.2, "axial strain of the drained tests"),
     "VISCOSITY": (float, 2.0, "Pa s"),
+    "TESTS": (str, "all", "all, or paths: of the dense sample alone, undrained beside dry"),
     "WORDS": (str, "", "more of fix pfv"),
     "OUT": scene.OUT,
 }
@@ -91,30 +92,37 @@ def test(settings, sample, fluid, rate, nudge=0.0):
 
 def tests_of(settings, kind, rates):
     sample = prepare(settings, kind)
-    runs = {("drained", rates[0]): test(settings, sample, "drained", rates[0])}
+    runs = {("drained", rates[0]): test(settings, sample, "drained", rates[0])} if settings["TESTS"] == "all" else {}
     for rate in rates:
         runs["undrained", rate] = test(settings, sample, "undrained", rate)
         runs["dry", rate] = test(settings, sample, "dry", rate)
     alike = [runs["dry", rates[0]]]
     alike += [test(settings, sample, "dry", rates[0], nudge) for nudge in NUDGES[:3 if settings["N"] >= ENOUGH else 1]]
     pairs = list(itertools.combinations(alike, 2))
-    return {"sample": sample, "runs": runs, "drained": drained_measures(runs["drained", rates[0]], sample["volume"]),
+    drained = {"drained": drained_measures(run, sample["volume"]) for (fluid, _), run in runs.items() if fluid == "drained"}
+    return {"sample": sample, "runs": runs, **drained,
             "scatter": compared(pairs), "cpu": sample["cpu"] + sum(run["cpu"] for run in [*runs.values(), *alike[1:]]),
             "paths": {rate: compared([(runs["undrained", rate], runs["dry", rate])]) for rate in rates}}
+
+
+def checks_of_paths(settings, kind, one, rates):
+    rows, scatter = [], one["scatter"]
+    for rate in rates:
+        wet = one["runs"]["undrained", rate]["rows"]
+        if kind == "dense" or settings["N"] >= ENOUGH:
+            rms = one["paths"][rate]["rms"]
+            rows.append((f"{kind}, {rate:g}/s: from the dry path, rms / p'", rms,
+                         f"<= 0.03 (two dry runs: {scatter['rms']:.2g})", rms <= max(0.03, scatter["rms"])))
+        total = float(np.sqrt(((wet["total"] / settings["STRESS"] - 1)**2).mean()))
+        rows.append((f"{kind}, {rate:g}/s: total stress of the sides / given - 1, rms", total, "<= 0.02", total <= 0.02))
+    return rows
 
 
 def checks(settings, found, rates):
     rows, stress = [], settings["STRESS"]
     for kind, one in found.items():
-        drained, scatter = one["drained"], one["scatter"]
-        for rate in rates:
-            wet = one["runs"]["undrained", rate]["rows"]
-            if kind == "dense" or settings["N"] >= ENOUGH:
-                rms = one["paths"][rate]["rms"]
-                rows.append((f"{kind}, {rate:g}/s: from the dry path, rms / p'", rms,
-                             f"<= 0.03 (two dry runs: {scatter['rms']:.2g})", rms <= max(0.03, scatter["rms"])))
-            total = float(np.sqrt(((wet["total"] / stress - 1)**2).mean()))
-            rows.append((f"{kind}, {rate:g}/s: total stress of the sides / given - 1, rms", total, "<= 0.02", total <= 0.02))
+        drained = one["drained"]
+        rows += checks_of_paths(settings, kind, one, rates)
         slow = one["runs"]["undrained", rates[0]]["rows"]["p"] / stress
         if kind == "loose":
             rows.append(("loose: pore pressure at the end / stress", slow[-10:].mean(), ">= 0.2", slow[-10:].mean() >= 0.2))
@@ -138,6 +146,20 @@ def checks(settings, found, rates):
                    ("drained: volumetric strain at the end, loose (contracts)", loose, "> 0", loose > 0)]
 
 
+def say_paths(one, rates):
+    for name, d in [("two dry runs", one["scatter"]), *((f"undrained and dry, {r:g}/s", one["paths"][r]) for r in rates)]:
+        print(f"  {name + ', stress paths':<36s} {100 * d['rms']:6.2f} % of p' apart (rms), {100 * d['largest']:.1f} % at most; "
+              f"p' at equal strain {100 * d['at_equal_strain']:.2f} %")
+
+
+def only_paths(settings, rates):
+    one = tests_of(settings, "dense", rates)
+    print(f"\ndense, {settings['N']} grains, CPU {one['cpu']:.0f} s")
+    say_paths(one, rates)
+    return scene.summary(SCENE, settings["OUT"], {**settings, "scatter": one["scatter"], "paths": {
+        f"{rate:g}": pair for rate, pair in one["paths"].items()}}, checks_of_paths(settings, "dense", one, rates))
+
+
 def work(words):
     settings = scene.parse(words, KEYS)
     rates = scene.numbers(settings, "RATES")
@@ -145,6 +167,10 @@ def work(words):
         raise scene.BadSetting("N must be at least 150; STRESS and VISCOSITY above 0")
     if not all(0.02 <= settings[k] <= 0.4 for k in ("STRAIN", "DRAINED")):
         raise scene.BadSetting("STRAIN and DRAINED must be between 0.02 and 0.4")
+    if settings["TESTS"] not in ("all", "paths"):
+        raise scene.BadSetting("TESTS must be all or paths")
+    if settings["TESTS"] == "paths":
+        return only_paths(settings, rates)
     found = {kind: tests_of(settings, kind, rates) for kind in FRICTION}
     print()
     for kind, one in found.items():
@@ -154,9 +180,7 @@ def work(words):
               f"{m['end'] / 1e3:.1f} at the end ({m['end_angle']:.1f}); volumetric strain {100 * m['contraction']:.2f} % at "
               f"most, {100 * m['volume_at_end']:.2f} % at the end\n  undrained at {rates[0]:g}/s: pore pressure between "
               f"{p.min():.1f} and {p.max():.1f} kPa, {p[-10:].mean():.1f} at the end; CPU {one['cpu']:.0f} s")
-        for name, d in [("two dry runs", one["scatter"]), *((f"undrained and dry, {r:g}/s", d) for r, d in one["paths"].items())]:
-            print(f"  {name + ', stress paths':<36s} {100 * d['rms']:6.2f} % of p' apart (rms), {100 * d['largest']:.1f} % at most; "
-                  f"p' at equal strain {100 * d['at_equal_strain']:.2f} %")
+        say_paths(one, rates)
     draw_drained(found, rates[0], SCENE / settings["OUT"])
     draw_undrained(found, rates, SCENE / settings["OUT"])
     measures = {kind: {key: one[key] for key in ("sample", "drained", "scatter", "cpu")} | {
