@@ -124,7 +124,7 @@ double pressure_beyond_a_surface_put_out(pfv::Coupling coupling) {
   const Eigen::VectorXd masses = Eigen::VectorXd::Ones(n);
   const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, n);
   const pfv::GrainDynamics dynamics{{masses.data(), n}, {none.data(), 3, n}};
-  const auto step = [&] { host.flow.advance(host.packing.view(), 1e-4, {coupling, &dynamics}); };
+  const auto step = [&] { host.flow.advance(host.packing.view(), 1e-4, pfv::Step::with(coupling, dynamics)); };
   step();
   host.box.upper[2] = 1.003;
   host.flow.set_box(host.box);
