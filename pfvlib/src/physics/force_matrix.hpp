@@ -47,12 +47,12 @@ using ViscousShares = std::vector<std::array<double, 3>>;
 ViscousShares viscous_shares(ConductanceLaw law, const PoreNetwork& network,
                              const Throats& throats, const Spheres& spheres);
 
-/// Facet by facet, with n from pore i to pore j: sphere k gets A^k (p_i - p_j) n (pressure), and its share
-/// of A^f (p_i - p_j) n (viscous), as does a no-slip wall. Each throat hands out S (p_i - p_j) n in full,
-/// so the forces on spheres and faces balance for any pressures and shares. The moments are those of the parts
-/// where they lie on the facet, the viscous ones at the centroid of the fluid area: with the pressures on
-/// the faces they balance, too, and a pressure has no moment about anything it surrounds.
-/// `vertices`: what the network's vertices stand for; `spheres`: N. No byte depends on the team.
+/// S of F = S p, facet by facet, with n from pore i to pore j: sphere k gets A^k (p_i - p_j) n (pressure; Chareyre et
+/// al. 2012 eq. 14), and its share of A^f (p_i - p_j) n (viscous; eqs. 17, 18), as does a no-slip wall. Each throat
+/// hands out S (p_i - p_j) n in full, so the forces on spheres and faces balance for any pressures and shares. The
+/// moments are those of the parts where they lie on the facet, the viscous ones at the centroid of the fluid area: with
+/// the pressures on the faces they balance, too, and a pressure has no moment about anything it surrounds. `vertices`:
+/// what the network's vertices stand for; `spheres`: N. No byte depends on the team.
 ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
                          const Throats& throats, const ViscousShares& shares, int spheres,
                          ForceParts parts, Team& team);

@@ -55,7 +55,8 @@ inline double domain_of(const Throats& throats, int t) {
 /// R_h of two whole pores, m; 0 where they have no solid surface.
 double hydraulic_radius_of_pores(const Throats& throats, const std::array<int, 2>& pores);
 
-/// Measures every throat. Pure; cost about 3 µs a sphere. No byte depends on the team.
+/// phi, gamma and gamma^k, A^k, A^f, S, L and n of every throat (Chareyre et al. 2012, sec. 3.2, as far as eqs. 9, 14
+/// and 18 take them). Pure; cost about 3 µs a sphere. No byte depends on the team.
 Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,
                         const Spheres& spheres, Team& team);
 Throats measure_throats(const PoreNetwork& network, const PoreBoundaries& boundaries,

@@ -43,8 +43,8 @@ struct SumOrder {
 };
 SumOrder sum_order(const ForceMatrix& forces, const Packing::Ids& ids, int pores, const Team& team);
 
-/// S^T v and what the bases sweep, m³/s, one entry a pore. `order` must have been made for the team; no byte
-/// depends on it. Cost: a pass over S.
+/// dV/dt = S^T v and what the bases sweep, m³/s, one entry a pore; over all pores they add up to the rate of the box.
+/// `order` must have been made for the team; no byte depends on it. Cost: a pass over S.
 void reciprocal_rates(const ForceMatrix& forces, const SumOrder& order, const Bases& bases,
                       const Motion& motion, Team& team, Eigen::VectorXd& rates);
 /// The magnitude of the terms that the rate of each pore is summed from, m³/s: the rate is exact to its round-off.
@@ -62,6 +62,7 @@ struct VolumeRateMatrix {
 
   int rows() const { return static_cast<int>(row_begin.size()) - 1; }
 };
+/// E = dV/dx of the tetrahedra (thesis eqs. 4.4-4.8).
 VolumeRateMatrix volume_rate_matrix(const PoreNetwork& network, const Spheres& spheres);
 
 /// dV/dt = E v, m³/s, one entry a pore; walls move along their normals.

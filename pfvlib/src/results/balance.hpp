@@ -22,6 +22,7 @@ struct Balance {
   std::vector<FaceResult> faces;
 };
 
+/// Fluxes of throats and faces (through a face: the sum of pore_inflows over its pores), forces on the faces.
 /// Cost: one solve, counted in `solves`, and a pass over the throats.
 Balance balance_of(const BuiltNetwork& built, const Solution& solution, std::int64_t& solves);
 

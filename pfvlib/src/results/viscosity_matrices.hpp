@@ -9,7 +9,8 @@
 
 namespace pfv {
 
-/// The fluid's resistance to the motion of one sphere alone: see Flow::viscosity_matrices. `packed`: spheres in
+/// The fluid's resistance V^k to the motion of one sphere alone, of which the papers' limit 2 M_k / rho(V^k) is made
+/// (thesis eqs. 4.10-4.16, the limit 4.15): see Flow::viscosity_matrices. `packed`: spheres in
 /// the packing.
 std::vector<Eigen::Matrix3d> viscosity_matrices(BuiltNetwork& built, const Problem& problem,
                                                 Eigen::Index packed,

@@ -66,15 +66,15 @@ struct PressureSystem {
 
 struct RowShare;
 
-/// Assembles G. `storage` (m³/Pa, one entry a pore, or none) is V^f / (K_f dt) of a compressible
-/// fluid; it goes on the diagonal and leaves nothing isolated. On several ranks (`rows`) the rows of own unknowns; those
-/// of borders hold what own pores give.
+/// Assembles G of G p = b (eq. 6; thesis eq. 4.8). `storage` (m³/Pa, one entry a pore, or none) is V^f / (K_f dt) of a
+/// compressible fluid; it goes on the diagonal and leaves nothing isolated. On several ranks (`rows`) the rows of own
+/// unknowns; those of borders hold what own pores give.
 PressureSystem assemble(const PoreNetwork& network, const std::vector<double>& conductances,
                         const Unknowns& unknowns, const std::optional<Eigen::VectorXd>& storage, const Share& share = {},
                         const RowShare* rows = nullptr);
 
-/// b = sources of each pore (m³/s) + inflow of the flux boundaries + what the imposed pressures
-/// (relative to the reference; read at their pores alone) drive.
+/// b of G p = b: -dV/dt and other sources of each pore (m³/s) + Q, the inflow of the flux boundaries + what the imposed
+/// pressures (relative to the reference; read at their pores alone) drive.
 void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, const Container& container,
                      const Eigen::VectorXd& sources, const Eigen::VectorXd& imposed,
                      Eigen::VectorXd& b);

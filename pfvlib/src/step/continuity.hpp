@@ -15,8 +15,9 @@ namespace pfv {
 std::vector<double> throat_fluxes(const BuiltNetwork& built, const Solution& solution,
                                   const Eigen::VectorXd& correction);
 
-/// Flow rate (m³/s) into the box through each pore: what its throats carry away, what fills its growing
-/// volume and what its compression stores. 0 where nothing is imposed, up to what the solve left.
+/// Flow rate (m³/s) into the box through each pore, sum_j q_ij + dV_i/dt + V^f (p - p_old) / (K_f dt): what its throats
+/// carry away, what fills its growing volume and what its compression stores. 0 where nothing is imposed, up to what
+/// the solve left.
 Eigen::VectorXd pore_inflows(const BuiltNetwork& built, const Solution& solution,
                              const std::vector<double>& fluxes, const Eigen::VectorXd& correction);
 

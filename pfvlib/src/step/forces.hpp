@@ -8,7 +8,7 @@
 
 namespace pfv {
 
-/// -density V gravity, N; `column` of the packing.
+/// Buoyancy -density V gravity, N; `column` of the packing.
 Eigen::Vector3d lift_of(const Problem& problem, const Packing& packing, int column);
 
 /// F = S p of the solution's pressures and what the options add to it; fills in the solution's loads, too.

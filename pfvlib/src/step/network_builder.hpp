@@ -19,8 +19,8 @@ namespace pfv {
 std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Problem& problem,
                                              WorkRecord& work);
 
-/// G with the storage of a time step `step` (s), ordered, where it has not been, and factored. Does
-/// nothing, and returns false, where it is there already. Throws SolverError.
+/// G with the storage V^f / (K_f dt) of a time step `step` (s) on its diagonal, ordered, where it has not been, and
+/// factored. Does nothing, and returns false, where it is there already. Throws SolverError.
 bool factor_pressures(BuiltNetwork& built, const Problem& problem, double step, WorkRecord& work);
 
 /// Why a network cannot be factored: where its conductances are the smallest and the largest.

@@ -24,7 +24,7 @@ class PoreStrain {
   void restore(double value) { value_ = value; }
   /// Begins anew for a network whose grains had strained by `taken_over` when it was taken up.
   void begin(StrainMeasure measure, int pores, double taken_over);
-  /// Adds the volume rates of a step.
+  /// Adds the volume rates of a step, m³/s: max_i |dV_i/dt| dt / V_i (thesis eqs. 5.13-5.14), or of the mean.
   void add(const BuiltNetwork& built, const Solution& solution);
   /// The strain since `then`, a former state of this, where fluid flows as in the last solution.
   double since(const PoreStrain& then, const BuiltNetwork& built, const Solution& last) const;

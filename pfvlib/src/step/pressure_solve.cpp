@@ -93,7 +93,8 @@ void impose(const BuiltNetwork& built, Solution& solution) {
 
 namespace {
 
-/// What the unknown pressures have to drive away from each pore, m³/s.
+/// What the unknown pressures have to drive away from each pore, m³/s: -dV/dt, V^f p_old / (K_f dt) of a compressible
+/// fluid, what a macroscopic gradient drives.
 Eigen::VectorXd sources_of(const BuiltNetwork& built, const Solution& solution) {
   Eigen::VectorXd sources = -solution.rates;
   if (built.kept.compressible())
