@@ -40,9 +40,9 @@ const Forces& DarcyData::compute(const Packing& packing, double at_time, bool ad
     const PhaseClock clock(work.seconds.total);
     solved = false;
     if (needs_renewal(packing, advance)) renew(packing);
-    seen_places = packing.positions;
-    seen_radii = packing.radii;
-    seen_box = box;
+    seen.places = packing.positions;
+    seen.radii = packing.radii;
+    seen.box = box;
     Eigen::Matrix3Xd velocities;
     gather_velocities(packing, built->grains.columns, velocities);
     last.moving = grid_options.grain_motion && !at_rest(packing, box);
@@ -72,13 +72,13 @@ void DarcyData::require_result() const {
 }
 
 bool DarcyData::was_seen(const Packing& packing) const {
-  return packing.positions == seen_places && packing.radii == seen_radii && same_shape(box, seen_box);
+  return packing.positions == seen.places && packing.radii == seen.radii && same_shape(box, seen.box);
 }
 
 /// Steps have the porosity renewed when their number says so; a look at grains or faces that are elsewhere is at those.
 bool DarcyData::needs_renewal(const Packing& packing, bool advance) const {
   if (stale || !built || steps_since_renewal >= grid_options.refresh_every) return true;
-  if (!same_grains(packing, box, packing_ids, built->grains.columns)) return true;
+  if (!same_grains(packing, box, seen.ids, built->grains.columns)) return true;
   if (!advance && !was_seen(packing)) return true;
   return !packing.velocities.allFinite();  // leads to a renewal, whose checks name the sphere
 }
@@ -107,7 +107,7 @@ void DarcyData::renew(const Packing& packing) {
   fresh->mobility = fresh->permeability / fluid.viscosity;
   if (built) ++renewals;
   built = std::move(fresh);
-  packing_ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
+  seen.ids.assign(packing.ids.data(), packing.ids.data() + packing.size());
   last.cells.porosity = built->porosity;
   last.cells.permeability = built->permeability;
   factor();
@@ -221,9 +221,9 @@ void DarcyData::sum_faces() {
 }
 
 void DarcyData::check_masses(const Eigen::VectorXd& masses) const {
-  if (masses.size() != static_cast<Eigen::Index>(packing_ids.size()))
+  if (masses.size() != static_cast<Eigen::Index>(seen.ids.size()))
     throw InputError("time step limit: " + std::to_string(masses.size()) + " masses for " +
-                     std::to_string(packing_ids.size()) + " spheres; give one a sphere");
+                     std::to_string(seen.ids.size()) + " spheres; give one a sphere");
   if (!(masses.array() > 0.0).all())
     throw InputError("time step limit: a mass is not a positive number; give kg");
   if (!options.forces) throw InputError("time step limit: switch Options::forces on");

@@ -41,6 +41,14 @@ struct GridSolution {
   std::vector<FaceResult> faces;
 };
 
+/// The packing and the box of the last call.
+struct SeenPacking {
+  std::vector<std::int64_t> ids;
+  Eigen::Matrix3Xd places;  ///< m
+  Eigen::VectorXd radii;    ///< m
+  Container box;
+};
+
 /// The state behind DarcyGrid.
 struct DarcyData {
   Container box;
@@ -49,11 +57,7 @@ struct DarcyData {
   Options options;
 
   std::unique_ptr<BuiltGrid> built;
-  std::vector<std::int64_t> packing_ids;
-  // at the last call
-  Eigen::Matrix3Xd seen_places;  // m
-  Eigen::VectorXd seen_radii;    // m
-  Container seen_box;
+  SeenPacking seen;
   std::unique_ptr<LinearSolver> solver;  ///< its ordering serves every renewal of the porosity
   bool stale = true;
   int steps_since_renewal = 0;

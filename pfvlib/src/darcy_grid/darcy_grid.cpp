@@ -146,7 +146,7 @@ std::int64_t DarcyGrid::retriangulations() const { return data_->renewals; }
 
 std::int64_t DarcyGrid::hidden_or_outside() const {
   data_->require_result();
-  return static_cast<std::int64_t>(data_->packing_ids.size()) -
+  return static_cast<std::int64_t>(data_->seen.ids.size()) -
          data_->built->grains.spheres.size();
 }
 

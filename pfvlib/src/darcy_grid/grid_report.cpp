@@ -41,7 +41,7 @@ Report make_report(const DarcyData& flow) {
   const BuiltGrid& built = *flow.built;
   Report report;
   report.model = "darcy_grid";
-  report.spheres = static_cast<std::int64_t>(flow.packing_ids.size());
+  report.spheres = static_cast<std::int64_t>(flow.seen.ids.size());
   report.outside = report.spheres - built.grains.spheres.size();
   report.pores = built.grid.size();
   report.unknowns = built.determined ? built.grid.size() : 0;
