@@ -19,10 +19,8 @@ void append(std::string& list, const std::string& word) { list += (list.empty() 
 
 /// "sealed, pressure P, flux Q"
 std::string boundary_forms() {
-  std::string forms;
-  for (const pfv::BoundaryKind& one : pfv::boundary_kinds)
-    append(forms, one.name + (one.symbol ? std::string(" ") + one.symbol : ""));
-  return forms;
+  return pfv::list_boundary_kinds(
+      [](const pfv::BoundaryKind& one) { return one.name + (one.symbol ? std::string(" ") + one.symbol : ""); });
 }
 
 // ------------------------------------------------------------------------------ faces and openings
@@ -448,9 +446,8 @@ int modify_pfv(PfvSettings& settings, int narg, char** arg) {
   } else if (keyword == "gradient") {
     parse_gradient(words, changed);
   } else if (!modify_face(keyword, words, changed)) {
-    std::string known = settings_with(&pfv::Hosts::modify) + ", gradient";
-    for (const pfv::BoundaryKind& kind : pfv::boundary_kinds) append(known, kind.name);
-    throw pfv::InputError("fix_modify knows no keyword '" + keyword + "'; there are " + known);
+    throw pfv::InputError("fix_modify knows no keyword '" + keyword + "'; there are " +
+                          settings_with(&pfv::Hosts::modify) + ", gradient, " + pfv::names_of_boundaries());
   }
   check_all(changed);
   settings = changed;

@@ -17,13 +17,10 @@ namespace {
 
 /// "sealed, pressure=P, flux=Q"; those that are open alone: of a region.
 std::string boundary_items(bool with_sealed = true) {
-  std::string items;
-  for (const BoundaryKind& one : boundary_kinds) {
-    if (!one.symbol && !with_sealed) continue;
-    items += (items.empty() ? "" : ", ") + std::string(one.name);
-    if (one.symbol) items += std::string("=") + one.symbol;
-  }
-  return items;
+  return list_boundary_kinds([&](const BoundaryKind& one) {
+    if (!with_sealed && !one.is_open()) return std::string();
+    return one.name + (one.symbol ? std::string("=") + one.symbol : "");
+  });
 }
 
 std::string face_items() { return boundary_items() + ", wall=" + names_of<Wall>("|") + ", velocity=V, spin=W"; }

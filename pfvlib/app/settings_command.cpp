@@ -80,23 +80,11 @@ std::string orderings_of(const SolverAbilities& solver) {
   return text;
 }
 
-/// Whether its number has to be a whole one: a half is refused.
-bool is_whole(const Setting& setting) {
-  Settings settings;
-  Words halves(std::vector<std::string>(static_cast<std::size_t>(setting.words), "0.5"), setting.name);
-  try {
-    setting.read(settings, halves);
-    return false;
-  } catch (const InputError&) {
-    return true;
-  }
-}
-
 /// The type of a keyword in Python, by how its value is written.
 std::string python_type(const Setting& setting) {
+  const std::string number = setting.whole ? "int" : "float";
   if (setting.words == 0) return "bool";
-  const std::string number = is_whole(setting) ? "int" : "float";
-  if (setting.words > 1) return number == "int" ? "Sequence[int]" : "ArrayLike";
+  if (setting.words > 1) return setting.whole ? "Sequence[int]" : "ArrayLike";
   if (setting.values.find(' ') != std::string::npos) return number + " | str";
   const bool takes_number = setting.values.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") != std::string::npos;
   std::string type = takes_number ? number : "", words;
@@ -162,14 +150,10 @@ void write_python_keywords(std::ostream& out) {
   const char* const between = " = ...,\n                 ";
   out << "# SPDX-License-Identifier: GPL-3.0-or-later\n"
          "# made by: pfv settings --python\n"
-         "set(PFV_BOUNDARIES [==[";
+         "set(PFV_BOUNDARIES [==["
+      << list_boundary_kinds([](const BoundaryKind& one) { return one.name + (": " + python_type(one)); }, between)
+      << " = ...]==])\nset(PFV_SETTINGS [==[";
   const char* before = "";
-  for (const BoundaryKind& kind : boundary_kinds) {
-    out << before << kind.name << ": " << python_type(kind);
-    before = between;
-  }
-  out << " = ...]==])\nset(PFV_SETTINGS [==[";
-  before = "";
   for (const Setting& setting : all_settings()) {
     if (!setting.hosts.python) continue;
     out << before << setting.name << ": " << python_type(setting);

@@ -67,12 +67,20 @@ void add_packing_options(CLI::App& command, SolveArguments& arguments, const std
       ->option_text("FILE.json")->group(group);
 }
 
+/// "sealed | pressure=P (Pa, of each pore on it) | ...", a line for each; of a region those that are open.
+std::string boundary_help(const char* between, bool of_region = false) {
+  return list_boundary_kinds([&](const BoundaryKind& one) {
+    if (of_region && !one.is_open()) return std::string();
+    return one.symbol ? std::string(one.name) + "=" + one.symbol + " (" + one.unit + ", " + one.note + ")" : one.name;
+  }, between);
+}
+
 void add_face_options(CLI::App& command, SolveArguments& arguments, const std::string& group) {
   repeatable(command.add_option("--face", arguments.faces,
                      "condition on a face, may be given several times\n"
                                 "NAME  xlo | xhi | ylo | yhi | zlo | zhi, or of the container\n"
-                                "ITEM  pressure=P (Pa) | flux=Q (m3/s, positive into the box) |\n"
-                                "      sealed | wall=no_slip|symmetry |\n"
+                                "ITEM  " + boundary_help(" |\n      ") + " |\n"
+                                "      wall=" + names_of<Wall>("|") + " |\n"
                                 "      velocity=V (m/s, positive along +axis; along its inward\n"
                                 "      normal in a container) | spin=W (rad/s, a cylinder)\n"
                                 "(default: sealed, at rest)"))
@@ -80,20 +88,19 @@ void add_face_options(CLI::App& command, SolveArguments& arguments, const std::s
   repeatable(command.add_option("--patch", arguments.patches,
                      "part of a face, may be given several times: the extent (m) of a\n"
                                 "rectangle along the two other axes in the order x y z, or of a\n"
-                                "block of space that cuts it out of any face, and one of\n"
-                                "pressure=P (Pa) | flux=Q (m3/s) | sealed (default: none)"))
+                                "block of space that cuts it out of any face, and one of\n" +
+                                boundary_help(" |\n") + " (default: none)"))
       ->option_text("NAME:A0,A1,B0,B1:ITEM or NAME:X0,X1,Y0,Y1,Z0,Z1:ITEM")->group(group);
   repeatable(command.add_option("--region", arguments.regions,
                      "pores inside the packing, for instance a well, may be given several\n"
-                                "times: extent (m) and pressure=P (Pa) | flux=Q (m3/s, positive\n"
-                                "into the pores) (default: none)"))
+                                "times: extent (m) and one of\n" + boundary_help(" |\n", true) + "\n(default: none)"))
       ->option_text("X0,X1,Y0,Y1,Z0,Z1:ITEM")->group(group);
   repeatable(command.add_option("--point", arguments.points,
                      "the pore at a place, as --region (default: none)"))
       ->option_text("X,Y,Z:ITEM")->group(group);
   command.add_option("--wall", arguments.wall,
                      "wall type of every face without wall= of its own (default no_slip)")
-      ->option_text("no_slip|symmetry")->group(group);
+      ->option_text(names_of<Wall>("|"))->group(group);
 }
 
 void add_cell_options(CLI::App& command, SolveArguments& arguments, const std::string& group) {

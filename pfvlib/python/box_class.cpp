@@ -73,24 +73,20 @@ Faces are xlo, xhi, ylo, yhi, zlo, zhi; one that is not named is sealed and at r
 changed box to `Flow.set_box`. Raises InputError for bounds that are flat, inverted or not finite, and for a tilt along
 an axis that is not periodic.)";
 
-const char* const face_text =
-    R"(Sets what is named of a face and returns the box.
+const std::string face_text = R"(Sets what is named of a face and returns the box.
 
-pressure: Pa, a number or a function of (place, time): 3 numbers (m), s. It is called for each pore of the face
-    at each solve, with the interpreter's lock
-flux: m3/s, positive into the box
-sealed: True
+)" + boundary_lines() + R"(
 wall: "no_slip" or "symmetry"
 velocity: m/s along the face's axis, positive along +axis
 sliding: m/s, 3 numbers in the face's plane; spin: rad/s about its axis; pivot: a point of that axis, m
 
 Raises InputError for an unknown face, TypeError for an unknown keyword.)";
 
-const char* const patch_text =
+const std::string patch_text =
     R"(Adds a rectangle with a boundary of its own to a face and returns the box.
 
 rectangle: [[a0, a1], [b0, b1]], m, along the two other axes in the order x, y, z
-one of pressure, flux, sealed: as for a face. Where patches overlap, the later one wins.)";
+one of )" + names_of_boundaries() + R"(: as for a face. Where patches overlap, the later one wins.)";
 
 std::string text_of(const Box& box) {
   std::ostringstream text;
@@ -109,12 +105,12 @@ void add_conditions(py::class_<Box>& box) {
   box.def("face", [](py::object self, const std::string& name, const py::kwargs& keywords) {
             set_face(self.cast<Box&>(), name, keywords);
             return self;
-          }, "name"_a, face_text);
+          }, "name"_a, face_text.c_str());
   box.def("patch", [](py::object self, const std::string& name, py::object rectangle, const py::kwargs& keywords) {
             add_patch(self.cast<Box&>(), name, rectangle, keywords);
             return self;
-          }, "name"_a, "rectangle"_a, patch_text);
-  box.def("region", &region_added<Box>, "lower"_a, "upper"_a, region_text);
+          }, "name"_a, "rectangle"_a, patch_text.c_str());
+  box.def("region", &region_added<Box>, "lower"_a, "upper"_a, region_text.c_str());
 }
 
 void add_measures(py::class_<Box>& box) {

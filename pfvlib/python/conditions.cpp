@@ -79,7 +79,7 @@ std::optional<Boundary> boundary_among(const std::string& function, const py::kw
   for (const BoundaryKind& kind : boundary_kinds) {
     if (!keywords.contains(kind.name)) continue;
     if (!kind.symbol && !py::bool_(keywords[kind.name])) continue;  // sealed=False
-    if (boundary) throw InputError(function + ": give one of sealed, pressure, flux");
+    if (boundary) throw InputError(function + ": give one of " + names_of_boundaries());
     boundary = boundary_of(kind, keywords[kind.name]);
   }
   return boundary;
@@ -89,7 +89,9 @@ Boundary required_boundary(const std::string& function, const py::kwargs& keywor
   for (const auto& item : keywords)
     require_known(function, item.first.cast<std::string>(), boundary_names());
   const auto boundary = boundary_among(function, keywords);
-  if (!boundary) throw InputError(function + ": give its pressure (Pa), its flux (m3/s) or sealed=True");
+  if (!boundary) throw InputError(function + ": give one of " + list_boundary_kinds([](const BoundaryKind& one) {
+      return one.name + (one.symbol ? std::string(" (") + one.unit + ")" : "=True");
+    }));
   return *boundary;
 }
 
@@ -101,6 +103,16 @@ py::dict dict_of(const Boundary& boundary) {
                         : boundary.profile ? py::object(py::str("a function"))
                                            : py::object(py::float_(boundary.value));
   return dict;
+}
+
+std::string boundary_lines() {
+  return list_boundary_kinds([](const BoundaryKind& one) {
+    if (!one.symbol) return std::string(one.name) + ": True: " + one.note;
+    const char* const function = "; a number or a function of (place, time): 3 numbers (m), s.\n    It is called for each "
+                                 "pore of the face at each solve, with the interpreter's lock";
+    return std::string(one.name) + ": " + one.unit + ", " + one.note +
+           (one.kind == Boundary::Kind::pressure ? function : "");
+  }, "\n");
 }
 
 void require_conditions(const py::kwargs& keywords, const std::vector<std::string>& beside) {

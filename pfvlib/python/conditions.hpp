@@ -29,8 +29,13 @@ py::dict dict_of(const Boundary& boundary);
 /// Throws TypeError for keywords of a face that are neither its boundary nor these.
 void require_conditions(const py::kwargs& keywords, const std::vector<std::string>& beside);
 
-inline constexpr const char* region_text = R"(Gives the pores between two corners (m) a pressure or a flux; returns the object.
+/// The kinds of boundaries in a docstring, a line for each.
+std::string boundary_lines();
 
+inline const std::string region_text = R"(Gives the pores between two corners (m) a boundary that fluid crosses.
+
+Returns the object.
+one of )" + names_of_boundaries() + R"(: as for a face
 With lower = upper it is the pore nearest to that point.)";
 
 /// Of a box or container; returns it.

@@ -158,9 +158,9 @@ gradient: macroscopic pressure gradient along periodic axes, Pa/m, 3 numbers; fl
 A face that is not named is sealed and at rest. A Flow takes a copy: hand a changed container to `Flow.set_box`. Raises
 InputError for one that is open or empty, for a face that bounds nothing, and naming entries that are wrong.)";
 
-const char* const container_face_text = R"(Sets what is named of a face and returns the container.
+const std::string container_face_text = R"(Sets what is named of a face and returns the container.
 
-pressure, flux, sealed, wall: as for `Box.face`
+)" + names_of_boundaries() + R"(, wall: as for `Box.face`
 velocity: m/s, 3 numbers of its pivot, or one along a plane's inward normal: positive into the fluid
 angular_velocity: rad/s, 3 numbers; pivot: the point that it turns about, m; spin: rad/s, a cylinder about its axis
 may_bound_nothing: True where others may keep the fluid from it
@@ -171,11 +171,11 @@ const char* const place_text = R"(Gives a face another place and returns the con
 offset alone (m), a cylinder axis, point or radius (m). What is None stays. Whether the faces still close a room is
 checked when a Flow takes them.)";
 
-const char* const container_patch_text = R"(Gives a part of a face a boundary of its own and returns the container.
+const std::string container_patch_text = R"(Gives a part of a face a boundary of its own and returns the container.
 
 extent: [[x0, x1], [y0, y1], [z0, z1]], m, a block of space that cuts the part out of any face, or, on a plane normal
     to an axis, [[a0, a1], [b0, b1]] along the two other axes in the order x, y, z
-one of pressure, flux, sealed: as for a face. Where patches overlap, the later one wins.)";
+one of )" + names_of_boundaries() + R"(: as for a face. Where patches overlap, the later one wins.)";
 
 std::string names_text_of(const Container& container) {
   std::ostringstream text;
@@ -193,11 +193,11 @@ void add_conditions_of(py::class_<Container>& container) {
   container.def("face", [](py::object self, const std::string& name, const py::kwargs& keywords) {
                   set_container_face(self.cast<Container&>(), name, keywords);
                   return self;
-                }, "name"_a, container_face_text);
+                }, "name"_a, container_face_text.c_str());
   container.def("place", &place, "name"_a, py::kw_only(), "inward_normal"_a = py::none(), "offset"_a = py::none(),
                 "axis"_a = py::none(), "point"_a = py::none(), "radius"_a = py::none(), place_text);
-  container.def("patch", &patch, "name"_a, "extent"_a, container_patch_text);
-  container.def("region", &region_added<Container>, "lower"_a, "upper"_a, region_text);
+  container.def("patch", &patch, "name"_a, "extent"_a, container_patch_text.c_str());
+  container.def("region", &region_added<Container>, "lower"_a, "upper"_a, region_text.c_str());
 }
 
 /// Of its faces as they are now.

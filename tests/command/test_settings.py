@@ -44,6 +44,22 @@ class Settings(CommandTest):
         self.assertEqual(keywords, KEYWORDS.read_text(),
                          f"out of date: pfv settings --python > {KEYWORDS.relative_to(ROOT)}")
 
+    def test_help_and_messages_name_every_kind_of_boundary(self):
+        kinds = re.findall(r"(\w+):", re.search(r"PFV_BOUNDARIES \[==\[(.*?)\]==\]", KEYWORDS.read_text(), re.DOTALL)[1])
+        self.assertGreaterEqual(len(kinds), 3)
+        text = self.run_pfv("solve", "--help").stdout
+        helps = {option: text.split(f"  --{option} ")[1].split("\n  --")[0] for option in ("face", "patch", "region")}
+        unknown = self.run_pfv("solve", "--packing", DENSE, *UNIT_BOX, "--face", "zlo:presure=1")
+        page = (DOC / "fix_pfv.md").read_text()
+        of_fix = re.search(r"\n  boundary = (.*)", page)[1]
+        for kind in kinds:
+            with self.subTest(kind=kind):
+                for option, entry in helps.items():
+                    self.assertEqual(kind in entry, option != "region" or kind != "sealed", option)
+                self.assert_refused(unknown, kind)
+                self.assertRegex(of_fix, rf"\b{kind}\b")
+                self.assertRegex(page, rf"\n{kind} NAME")
+
     def test_the_help_has_each_option_with_its_default(self):
         text = self.run_pfv("solve", "--help").stdout
         for name, _, _, default, _, option, *_ in self.rows():

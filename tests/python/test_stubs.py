@@ -94,7 +94,7 @@ class Stubs(unittest.TestCase):
         for kind in BOUNDARIES:
             box = pfv.Box([[0, 1]] * 3).face("zlo", **{kind: 1.0})
             self.assertIn(kind, box.faces["zlo"])
-        with self.assertRaisesRegex(pfv.InputError, "give one of "):
+        with self.assertRaisesRegex(pfv.InputError, "give one of " + ", ".join(BOUNDARIES)):
             box.face("zlo", **{kind: 1.0 for kind in BOUNDARIES})
         for name in ("Box", "Container"):
             for member in ("face", "patch", "region"):

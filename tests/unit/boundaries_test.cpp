@@ -30,6 +30,30 @@ Result solve(const pfv::PackingArrays& packing, const pfv::Box& box) {
 
 double flux(const Result& r, Face face) { return r.report.faces[static_cast<int>(face)].flux; }
 
+TEST(Boundaries, OnlyImposedFluxesLetInWhatTheirValueSays) {
+  pfv::Box box;
+  box[Face::xlo].boundary = Boundary::flux(3.0);
+  box[Face::xhi].boundary = Boundary::pressure(5.0);
+  box.patches.push_back({Face::zhi, {0.2, 0.6, 0.2, 0.6}, Boundary::flux(-2.0)});
+  const pfv::Container container(box);
+  EXPECT_EQ(pfv::imposed_inflow(container, static_cast<int>(Face::xlo)), 3.0);
+  EXPECT_EQ(pfv::imposed_inflow(container, static_cast<int>(Face::xhi)), 0.0);
+  EXPECT_EQ(pfv::imposed_inflow(container, static_cast<int>(Face::ylo)), 0.0);
+  EXPECT_EQ(pfv::imposed_inflow(container, pfv::patch_number(container, 0)), -2.0);
+}
+
+TEST(Boundaries, AnUnknownKindIsAnsweredWithAllThatThereAre) {
+  Boundary boundary;
+  boundary.kind = static_cast<Boundary::Kind>(99);
+  try {
+    pfv::check(boundary, "face xlo");
+    FAIL();
+  } catch (const pfv::InputError& error) {
+    for (const pfv::BoundaryKind& one : pfv::boundary_kinds)
+      EXPECT_NE(std::string(error.what()).find(one.name), std::string::npos) << error.what();
+  }
+}
+
 TEST(FluxFaces, GiveBackThePressureDifferenceThatDroveTheFlux) {
   const auto packing = data_packing("packing_500.csv");
   const Result driven = solve(packing, upward_box(pfv::Wall::no_slip));

@@ -116,7 +116,7 @@ TEST(Regions, AreRefusedWhereTheyMeanNothing) {
     expect_line(refusal([&] { pfv::check(box); }), part);
   };
   refused(point(0.5, 0.5, 1.5, Boundary::flux(1.0)), "region 1 along z");
-  refused(point(0.5, 0.5, 0.5, Boundary::sealed()), "pressure or a flux");
+  refused(point(0.5, 0.5, 0.5, Boundary::sealed()), "give it one of pressure, flux");
   refused(point(0.5, NAN, 0.5, Boundary::flux(1.0)), "along y");
   refused({{0.5, 0.5, 0.5}, {0.4, 0.6, 0.6}, Boundary::flux(1.0)}, "inverted");
   refused(point(0.5, 0.5, 0.5, Boundary::pressure(INFINITY)), "region 1: pressure");

@@ -72,16 +72,26 @@ struct Boundary {
   }
 };
 
-/// How each kind is written, and the letter and the unit of its value; null for one without.
+/// How each kind is written, the letter and the unit of its value (null for one without), and what help says of it.
 struct BoundaryKind {
   Boundary::Kind kind;
   const char* name;
   const char* symbol;
   const char* unit;
+  const char* note;
+
+  bool is_open() const { return Boundary{kind, 0.0, {}}.is_open(); }
 };
-inline constexpr std::array<BoundaryKind, 3> boundary_kinds{{{Boundary::Kind::sealed, "sealed", nullptr, nullptr},
-                                                             {Boundary::Kind::pressure, "pressure", "P", "Pa"},
-                                                             {Boundary::Kind::flux, "flux", "Q", "m3/s"}}};
+inline constexpr std::array<BoundaryKind, 3> boundary_kinds{
+    {{Boundary::Kind::sealed, "sealed", nullptr, nullptr, "no fluid crosses it"},
+     {Boundary::Kind::pressure, "pressure", "P", "Pa", "of each pore on it"},
+     {Boundary::Kind::flux, "flux", "Q", "m3/s", "positive into the box"}}};
+
+/// The kinds in their order, each as `form` writes it, for help and messages; one without a text is left out.
+std::string list_boundary_kinds(const std::function<std::string(const BoundaryKind&)>& form,
+                                const char* separator = ", ");
+/// "sealed, pressure, flux"
+std::string names_of_boundaries();
 
 /// One of the six plane walls of the box.
 struct FaceCondition {

@@ -60,7 +60,8 @@ struct Setting {
   Hosts hosts;
   std::vector<Model> models;                    ///< that read it
   bool SolverAbilities::*solvers = nullptr;        ///< the solvers that read it; null: all
-  int words = 1;                                ///< of its value; 0: the command's option is a flag
+  int words = 1;                                ///< of its value; 0: yes or no, which the command may leave away for yes
+  bool whole = false;                           ///< its number is a whole one
   std::function<void(Settings&, Words&)> read;
   std::function<std::string(const Settings&)> text;  ///< of its present value
   std::function<void(const Settings&)> check;        ///< throws InputError where that is out of range

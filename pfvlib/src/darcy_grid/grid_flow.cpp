@@ -62,7 +62,7 @@ GridDrive drive_of(const Grid& grid, const std::vector<GridFace>& faces, const C
     if (boundary.imposes_pressure())
       drive.imposed[f] = pressure_on(grid, faces[f], box, time) - reference;
     if (boundary.imposes_flux())  // all faces of a boundary are equal: they share by number
-      drive.inflow[f] = boundary.value / shares[faces[f].boundary];
+      drive.inflow[f] = imposed_inflow(box, faces[f].boundary) / shares[faces[f].boundary];
   }
   return drive;
 }

@@ -120,6 +120,11 @@ void give_to_regions(std::vector<PoreBoundaries::Contact>& contacts, const PoreN
 
 }  // namespace
 
+double imposed_inflow(const Container& container, int number) {
+  const Boundary& boundary = boundary_of(container, number);
+  return boundary.imposes_flux() ? boundary.value : 0.0;
+}
+
 std::string boundary_name(const Container& container, int number) {
   const int faces = container.face_count();
   if (number < faces) return "face " + container.faces[number].name;

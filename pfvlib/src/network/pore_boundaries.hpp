@@ -41,6 +41,9 @@ inline const Boundary& boundary_of(const Container& container, int number) {
   if (number < regions) return container.patches[number - faces].boundary;
   return container.regions[number - regions].boundary;
 }
+/// What a boundary with an imposed flow rate lets in, m³/s; 0 for any other. The one place that knows how a kind's value
+/// makes a flow rate.
+double imposed_inflow(const Container& container, int number);
 /// "face zlo", "patch 2 on face zhi", "region 1": for messages.
 std::string boundary_name(const Container& container, int number);
 

@@ -118,11 +118,24 @@ void check_region(const Box& box, std::size_t number) {
                        interval(box.lower[axis], box.upper[axis]) + ": move it into the box");
   }
   if (!region.boundary.is_open())
-    throw InputError(where + " has no boundary: give it a pressure or a flux");
+    throw InputError(where + " has no boundary: give it one of " + list_boundary_kinds([](const BoundaryKind& one) {
+                       return std::string(one.is_open() ? one.name : "");
+                     }));
   check(region.boundary, where);
 }
 
 }  // namespace
+
+std::string list_boundary_kinds(const std::function<std::string(const BoundaryKind&)>& form, const char* separator) {
+  std::string list;
+  for (const BoundaryKind& one : boundary_kinds)
+    if (const std::string text = form(one); !text.empty()) list += (list.empty() ? "" : separator) + text;
+  return list;
+}
+
+std::string names_of_boundaries() {
+  return list_boundary_kinds([](const BoundaryKind& one) { return std::string(one.name); });
+}
 
 void check(const Boundary& boundary, const std::string& where) {
   for (const BoundaryKind& one : boundary_kinds) {
@@ -130,7 +143,7 @@ void check(const Boundary& boundary, const std::string& where) {
     if (one.symbol) require_finite(boundary.value, where + ": " + one.name);
     return;
   }
-  throw InputError(where + ": unknown kind of boundary: use sealed, pressure or flux");
+  throw InputError(where + ": unknown kind of boundary: use one of " + names_of_boundaries());
 }
 
 void check(const Box& box) {

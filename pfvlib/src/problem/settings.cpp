@@ -62,6 +62,11 @@ int words_of(const Value&) { return 1; }
 int words_of(const Eigen::Vector3d&) { return 3; }
 int words_of(const std::array<int, 3>&) { return 3; }
 
+template <class Value>
+bool is_whole(const Value&) { return false; }
+bool is_whole(const int&) { return true; }
+bool is_whole(const std::array<int, 3>&) { return true; }
+
 // ---------------------------------------------------------------------------------- kinds of rows
 
 const std::vector<Model> any_model{Model::pores, Model::darcy_grid}, pores{Model::pores},
@@ -95,6 +100,7 @@ Setting number(Setting setting, const char* noun, const char* values, const char
   setting.values = values;
   setting.unit = unit;
   setting.words = words_of(place(Settings{}));
+  setting.whole = is_whole(place(Settings{}));
   setting.read = [noun = setting.noun, &demand, place](Settings& settings, Words& words) {
     read_value(words, noun, demand, place(settings));
   };

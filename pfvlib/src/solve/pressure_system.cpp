@@ -235,7 +235,7 @@ void right_hand_side(const PressureSystem& system, const Unknowns& unknowns, con
       b[unknowns.of_pore[pore]] += sources[static_cast<Eigen::Index>(pore)];
   for (std::size_t boundary = 0; boundary < unknowns.of_boundary.size(); ++boundary)
     if (unknowns.fed_by[boundary] >= 0)
-      b[unknowns.of_boundary[boundary]] += boundary_of(container, static_cast<int>(boundary)).value;
+      b[unknowns.of_boundary[boundary]] += imposed_inflow(container, static_cast<int>(boundary));
   for (const auto& coupling : system.couplings)
     b[coupling.unknown] += coupling.conductance * imposed[coupling.pore];
 }

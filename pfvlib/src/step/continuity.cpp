@@ -20,7 +20,7 @@ Eigen::VectorXd continuity_defect(const BuiltNetwork& built, const Solution& sol
   Eigen::VectorXd defect = -pore_inflows(built, solution, throat_fluxes(built, solution, none), none);
   for (std::size_t b = 0; b < unknowns.fed_by.size(); ++b)
     if (const int pore = unknowns.fed_by[b]; pore >= 0)
-      defect[pore] += boundary_of(solution.container, static_cast<int>(b)).value;
+      defect[pore] += imposed_inflow(solution.container, static_cast<int>(b));
   return defect;
 }
 
@@ -35,7 +35,7 @@ Eigen::VectorXd gross_sources(const BuiltNetwork& built, const Solution& solutio
   if (solution.moving) gross = gross_rates(built, solution.motion);
   for (std::size_t b = 0; b < unknowns.fed_by.size(); ++b)
     if (const int pore = unknowns.fed_by[b]; pore >= 0)
-      gross[pore] += std::abs(boundary_of(solution.container, static_cast<int>(b)).value);
+      gross[pore] += std::abs(imposed_inflow(solution.container, static_cast<int>(b)));
   if (!solution.container.pressure_gradient.isZero(0.0))
     for (int t = 0; t < network.throats(); ++t) {
       const double rate = std::abs(built.conductances.value[t] *

@@ -114,14 +114,11 @@ namespace {
 /// What goes in comes out, and something does.
 bool fluxes_balance(const Container& container) {
   double sum = 0.0, largest = 0.0;
-  const auto add = [&](const Boundary& boundary) {
-    if (!boundary.drives_flux()) return;
-    sum += boundary.value;
-    largest = std::max(largest, std::abs(boundary.value));
-  };
-  for (const ContainerFace& face : container.faces) add(face.boundary);
-  for (const ContainerPatch& patch : container.patches) add(patch.boundary);
-  for (const Region& region : container.regions) add(region.boundary);
+  for (int b = 0; b < boundary_count(container); ++b) {
+    const double inflow = imposed_inflow(container, b);
+    sum += inflow;
+    largest = std::max(largest, std::abs(inflow));
+  }
   return largest > 0.0 && std::abs(sum) <= 1e-9 * largest;
 }
 
@@ -204,7 +201,7 @@ Forced forced_out(const BuiltNetwork& built, const Solution& solution, const Iso
   for (std::size_t b = 0; b < built.unknowns.fed_by.size(); ++b) {
     const int fed = built.unknowns.fed_by[b];
     if (fed < 0 || std::find(isolated.pores.begin(), isolated.pores.end(), fed) == isolated.pores.end()) continue;
-    const double flux = boundary_of(solution.container, static_cast<int>(b)).value;
+    const double flux = imposed_inflow(solution.container, static_cast<int>(b));
     forced.net += flux;
     forced.gross += std::abs(flux);
   }

@@ -2,6 +2,7 @@
 #include "pfv/solve_plan.hpp"
 
 #include "geometry/pi.hpp"
+#include "network/pore_boundaries.hpp"
 #include "parallel/ranks.hpp"
 
 #include <algorithm>
@@ -96,11 +97,12 @@ class ImposedChange {
  public:
   explicit ImposedChange(const Container& then) : places_(places_within(then)) {}
 
+  void compare_inflows(double now, double then) {
+    fluxes_ = std::max(fluxes_, std::abs(now - then));
+    largest_flux_ = std::max({largest_flux_, std::abs(now), std::abs(then)});
+  }
+
   void compare(const Boundary& now, const Boundary& then, const Surface* face) {
-    if (then.imposes_flux()) {
-      fluxes_ = std::max(fluxes_, std::abs(now.value - then.value));
-      largest_flux_ = std::max({largest_flux_, std::abs(now.value), std::abs(then.value)});
-    }
     if (!then.imposes_pressure()) return;
     if (!now.profile || !then.profile) return compare_pressures(now.value, then.value);
     for (Eigen::Vector3d place : places_) {
@@ -136,6 +138,8 @@ class ImposedChange {
 
 ImposedChange change_of_boundaries(const Container& now, const Container& then) {
   ImposedChange change(then);
+  for (int b = 0; b < boundary_count(then); ++b)
+    if (boundary_of(then, b).imposes_flux()) change.compare_inflows(imposed_inflow(now, b), imposed_inflow(then, b));
   for (std::size_t f = 0; f < now.faces.size(); ++f)
     change.compare(now.faces[f].boundary, then.faces[f].boundary, &then.faces[f].surface);
   for (std::size_t i = 0; i < now.patches.size(); ++i)
