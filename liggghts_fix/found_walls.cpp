@@ -297,9 +297,7 @@ void PfvFoundWalls::drop_walls_that_bound_nothing(PfvSettings& settings, std::ve
     });
     if (!doubled && !behind && (!with || !without || std::abs(*without - *with) > same * *with)) continue;
     left_out.push_back((settings.sources[f].kind == Source::mesh ? "mesh '" : "wall '") + settings.faces[f].name + "' bounds nothing, since others keep the fluid from it");
-    settings.faces.erase(settings.faces.begin() + static_cast<std::ptrdiff_t>(f));
-    settings.sources.erase(settings.sources.begin() + static_cast<std::ptrdiff_t>(f));
-    surfaces = std::move(others);
+    remove_wall(settings, surfaces, f);
   }
 }
 

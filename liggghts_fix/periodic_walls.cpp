@@ -87,9 +87,7 @@ void PfvFoundWalls::leave_out_walls_across(PfvSettings& settings, std::vector<Su
       throw pfv::InputError(what + ": it stands across " + where + ", along which the simulation box is periodic; take it "
                             "out, or use `boundary f` along that axis");
     left_out.push_back(what + " stands across " + where + ", along which the simulation box is periodic");
-    settings.faces.erase(settings.faces.begin() + static_cast<std::ptrdiff_t>(f));
-    settings.sources.erase(settings.sources.begin() + static_cast<std::ptrdiff_t>(f));
-    surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(f));
+    remove_wall(settings, surfaces, f);
   }
 }
 
@@ -121,10 +119,7 @@ void PfvFoundWalls::add_periods(PfvSettings& settings, std::vector<Surfaces>& su
 
 void PfvFoundWalls::remove_periods(PfvSettings& settings, std::vector<Surfaces>& surfaces) const {
   for (std::size_t f = settings.faces.size(); f-- > 0;) {
-    if (settings.sources[f].kind != Source::periodic) continue;
-    settings.faces.erase(settings.faces.begin() + static_cast<std::ptrdiff_t>(f));
-    settings.sources.erase(settings.sources.begin() + static_cast<std::ptrdiff_t>(f));
-    surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(f));
+    if (settings.sources[f].kind == Source::periodic) remove_wall(settings, surfaces, f);
   }
 }
 

@@ -32,6 +32,13 @@ bool is_behind_another(std::size_t face, const pfv::Surface& plane, const PfvSet
   return false;
 }
 
+void remove_wall(PfvSettings& settings, std::vector<std::vector<pfv::Surface>>& surfaces, std::size_t face) {
+  const auto at = static_cast<std::ptrdiff_t>(face);
+  settings.faces.erase(settings.faces.begin() + at);
+  settings.sources.erase(settings.sources.begin() + at);
+  surfaces.erase(surfaces.begin() + at);
+}
+
 std::optional<double> volume_within(const std::vector<std::vector<pfv::Surface>>& of_faces, const Eigen::Vector3d& middle) {
   std::vector<pfv::ContainerFace> faces;
   for (const auto& surfaces : of_faces)

@@ -27,6 +27,9 @@ pfv::Surface facing(const pfv::Surface& surface, const Eigen::Vector3d& inside);
 bool is_behind_another(std::size_t face, const pfv::Surface& plane, const PfvSettings& settings,
                        const std::vector<std::vector<pfv::Surface>>& surfaces, const Eigen::Vector3d& middle);
 
+/// Takes a face out, with its source and its surfaces.
+void remove_wall(PfvSettings& settings, std::vector<std::vector<pfv::Surface>>& surfaces, std::size_t face);
+
 /// Of the container with these walls, each with the grains' middle on its inner side; nothing if it is open.
 std::optional<double> volume_within(const std::vector<std::vector<pfv::Surface>>& of_faces, const Eigen::Vector3d& middle);
 

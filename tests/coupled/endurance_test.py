@@ -44,7 +44,7 @@ class Endurance(CoupledTest):
         for words in ("", "bulk_modulus 1e6", "coupling implicit", "output 10 flow.pvd"):
             memory = self.resident(words)
             rises = [after - before for before, after in itertools.pairwise(memory[1:])]
-            self.assertLess(statistics.median(rises), 100, (words, memory))
+            self.assertLess(statistics.median(rises), 50, (words, memory))
             self.assertLess(max(memory) - memory[SAMPLES // 2 - 1], 8192, (words, memory))
             if "PFV_RECORD" in os.environ:  # for doc/extremes.py
                 with open(os.environ["PFV_RECORD"], "a", encoding="utf-8") as record:

@@ -17,13 +17,18 @@ THERMO = ("thermo_style custom step f_flow[3] f_flow[4] f_flow[5] f_flow[8] " +
           "\nthermo_modify norm no format float %.15g\nthermo 5\n")
 
 
+def write_paddle(folder):
+    """paddle.stl in the middle of moving grains, and packing.data."""
+    grains = [g for g in packing(6) if not (abs(g[2] - MIDDLE) < g[4] + 1e-3 and abs(g[1] - MIDDLE) < 0.03
+                                            and abs(g[3] - MIDDLE) < 0.03)]
+    write_data(folder, grains, random_velocities(grains))
+    write_mesh(folder / "paddle.stl", plate(1, 0.025, (MIDDLE, MIDDLE, MIDDLE)))
+
+
 class Obstacles(CoupledTest):
     def setUp(self):
         super().setUp()
-        grains = [g for g in packing(6) if not (abs(g[2] - MIDDLE) < g[4] + 1e-3 and abs(g[1] - MIDDLE) < 0.03
-                                                and abs(g[3] - MIDDLE) < 0.03)]
-        write_data(self.folder, grains, random_velocities(grains))
-        write_mesh(self.folder / "paddle.stl", plate(1, 0.025, (MIDDLE, MIDDLE, MIDDLE)))
+        write_paddle(self.folder)
 
     def rows(self):
         return read_thermo((self.folder / "log.liggghts").read_text())

@@ -3,11 +3,8 @@
 import unittest
 
 from bodies_test import CREATE, GRAVITY, HEAD, INSERT, VOLUME
-from coupled import CoupledTest, dump, forces, largest_difference, packing, random_velocities, read_dump, read_thermo
-from coupled import restarted_head, write_data
-from obstacles_test import FLOW, MIDDLE, PADDLE, THERMO, TURN, WATER
-from plates import write_mesh
-from scene_meshes import plate
+from coupled import CoupledTest, dump, forces, largest_difference, read_dump, read_thermo, restarted_head
+from obstacles_test import FLOW, PADDLE, THERMO, TURN, WATER, write_paddle
 
 SHARED = "solver amg tolerance 1e-11 ranks all"
 ALONE = SHARED.replace("all", "one")
@@ -22,10 +19,7 @@ def where(ranks):
 class SharedObstacles(CoupledTest):
     def setUp(self):
         super().setUp()
-        grains = [g for g in packing(6) if not (abs(g[2] - MIDDLE) < g[4] + 1e-3 and abs(g[1] - MIDDLE) < 0.03
-                                                and abs(g[3] - MIDDLE) < 0.03)]
-        write_data(self.folder, grains, random_velocities(grains))
-        write_mesh(self.folder / "paddle.stl", plate(1, 0.025, (MIDDLE, MIDDLE, MIDDLE)))
+        write_paddle(self.folder)
 
     def fix(self, ranks, words="", fluid=FLOW):
         return f"fix flow all pfv {fluid} obstacle mesh pad {words} {where(ranks)}\n"

@@ -149,7 +149,7 @@ struct Bounds {
 };
 /// The triangulation's walls are spheres of 2^25 box lengths, which places them to a few 1e-9 of the box: what is
 /// smaller may be in the volumes, and in the areas that forces act on.
-constexpr Bounds round_off{1e-10, 1e-11}, by_triangulation{1e-6, 1e-6};
+constexpr Bounds round_off{1e-10, 1e-11}, by_triangulation{1e-6, 1e-7};
 
 struct Kind {
   const char* name;
