@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Accuracy of long time steps in a consolidation with new networks, over the size ratio."""
-from consolidations import consolidation, largest, percent
+from consolidations import OFTEN, consolidation, largest, percent
 from long_steps import of_ratio
 from packings import POST, contact_limit, time_step
 from samples import printed, sample
@@ -31,7 +31,7 @@ def table():
         viscosity, time = VISCOUS * limit / sixth, SIXTHS[size] * sixth
 
         def run(words, step):
-            return consolidation(data, viscosity, step, words, time)
+            return consolidation(data, viscosity, step, words + OFTEN, time)
 
         fine = run("time_step_check no", FINE / VISCOUS * sixth)
         settled, peak = fine.heights[0] - fine.heights[-1], max(fine.mean_pressures)

@@ -12,6 +12,7 @@ STEP = 5.6e-4  # s: two thirds of the contact limit of these grains
 STEPS = 112  # times R; a multiple of INSTANTS for each R
 GRAVITY = 10.0  # m/s2: under more these few grains change places, each run at its own time
 INSTANTS = 160
+OFTEN = " retriangulate 0.01"  # 1 % of the largest strain: the default makes one new network in short runs, or none
 RUNS = {10: ("staged", "implicit"), 100: ("staged", "implicit"), 1000: ("staged", "implicit"),
         10000: ("implicit",)}
 REFERENCES = {10: ("time_step_check no", 50), 100: ("coupling implicit", 4),
@@ -81,7 +82,7 @@ def table():
         viscosity, time = ratio * limit / STEP, ratio * STEPS * STEP
 
         def run(words, parts=1):
-            return consolidation(data, viscosity, STEP / parts, words, time, INSTANTS,
+            return consolidation(data, viscosity, STEP / parts, words + OFTEN, time, INSTANTS,
                                  gravity=GRAVITY)
 
         if ratio in REFERENCES:

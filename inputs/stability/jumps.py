@@ -3,7 +3,7 @@
 one: the velocities of the grains leave the pores of the old network as they are, not yet those of the new."""
 import statistics
 
-from consolidations import percent
+from consolidations import OFTEN, percent
 from samples import liggghts, must, printed, rows_of, sample
 from tables import Table
 
@@ -35,7 +35,7 @@ def table():
                  "the same difference of steps without a new network, median: pressure, force")
     for coupling, all_parts in RUNS.items():
         for parts in all_parts:
-            words = "time_step_check no" if coupling == "explicit" else f"coupling {coupling}"
+            words = ("time_step_check no" if coupling == "explicit" else f"coupling {coupling}") + OFTEN
             found = rows_of(must(liggghts(
                 "in.consolidation", data=data, viscosity=viscosity, dt=repr(STEP / parts),
                 steps=round(TIME / STEP) * parts, often=1, words=words)), columns=8)

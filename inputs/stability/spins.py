@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What spins do that the fluid turns (`torques yes`): settlements at the same t / viscosity."""
-from consolidations import GRAVITY, consolidation
+from consolidations import GRAVITY, OFTEN, consolidation
 from regions import limits_of
 from samples import sample
 from tables import Table
@@ -21,7 +21,7 @@ def table():
         step = PART * contact
 
         def settled(ratio, words, parts=1, **variables):
-            run = consolidation(data, ratio * coupling / step, step / parts, words, ratio * length * step,
+            run = consolidation(data, ratio * coupling / step, step / parts, words + OFTEN, ratio * length * step,
                                 4, gravity=GRAVITY, **variables)
             return f"{1e6 * (run.heights[0] - run.heights[-1]):.1f}"
 
