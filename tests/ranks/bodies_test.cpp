@@ -134,8 +134,11 @@ TEST(SharedBodies, AnObstacleAmongGrains) {
   motion.pivot = middle;
   pfv::PackingArrays all = packing;
   pfv::add_obstacle(all, ball, motion, 100000, drained());
+  pfv::Options sheared = tight();
+  sheared.shear_viscous = true;
   for (const Deal deal : {Deal::by_place, Deal::at_random}) {
     expect_as_on_one_rank({all, drained(), {}, tight(), 0.0, deal});
+    expect_as_on_one_rank({all, drained(), {}, sheared, 0.0, deal});
     // in parts, as a host adds it to the grains of each rank
     const std::vector<int> columns = own_columns(packing, deal);
     pfv::PackingArrays part = part_of(packing, columns);
@@ -172,7 +175,9 @@ TEST(SharedBodies, BodiesAtRandom) {
     if (seed % 3 == 0) box[pfv::Face::xlo].boundary = pfv::Boundary::flux(1e-3);
     const std::vector<int> columns = own_columns(packing, seed % 2 ? Deal::at_random : Deal::by_place);
     const auto solved = [&](const pfv::PackingArrays& part, std::shared_ptr<const pfv::Ranks> ranks, std::string& refusal) {
-      pfv::Flow flow(box, fluid, tight(), ranks);
+      pfv::Options options = tight();
+      options.shear_viscous = seed % 4 < 2;
+      pfv::Flow flow(box, fluid, options, ranks);
       try {
         const Eigen::Matrix3Xd forces = flow.evaluate(part.view(), 1e-3).total;
         return std::pair(forces, flow.report());

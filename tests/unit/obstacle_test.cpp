@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Meshes among the grains: the spheres that stand for them, tightness, volumes, forces, motion.
 #include "support/meshes.hpp"
+#include "support/packings.hpp"
 
 #include "pfv/dense_packing.hpp"
 #include "pfv/error.hpp"
@@ -70,16 +71,20 @@ struct Pushed {
   double limit;
 };
 
-/// Grains of a cube that the obstacle does not touch, and the load on it as it moves.
-Pushed push(const pfv::Obstacle& obstacle, const pfv::ObstacleMotion& motion, bool torques = false) {
+bool touches(const pfv::Obstacle& obstacle, const Vector& place, double radius) {
+  for (Eigen::Index j = 0; j < obstacle.size(); ++j)
+    if ((place - obstacle.centres.col(j)).norm() < 0.98 * (radius + obstacle.radii[j])) return true;
+  return false;
+}
+
+/// Grains of a cube that touch neither the obstacle nor another one in its place, and the load on it as it moves.
+Pushed push(const pfv::Obstacle& obstacle, const pfv::ObstacleMotion& motion, bool torques = false,
+            const pfv::Obstacle& other = {}) {
   const pfv::PackingArrays cube = pfv::dense_packing(300, 0.6, 0.2, 1);
   std::vector<int> kept;
-  for (int k = 0; k < cube.radii.size(); ++k) {
-    bool apart = true;
-    for (Eigen::Index j = 0; j < obstacle.size(); ++j)
-      apart &= (cube.positions.col(k) - obstacle.centres.col(j)).norm() > 0.98 * (cube.radii[k] + obstacle.radii[j]);
-    if (apart) kept.push_back(k);
-  }
+  for (int k = 0; k < cube.radii.size(); ++k)
+    if (!touches(obstacle, cube.positions.col(k), cube.radii[k]) && !touches(other, cube.positions.col(k), cube.radii[k]))
+      kept.push_back(k);
   pfv::PackingArrays packing;
   packing.ids = pfv::Packing::Ids(cube.ids(kept));
   packing.radii = Eigen::VectorXd(cube.radii(kept));
@@ -129,26 +134,74 @@ TEST(Obstacles, AMeshOfASphereIsOneSphereWhereItIsAsRound) {
   EXPECT_NEAR(found.radii[0], 0.2, 0.003);
 }
 
-/// A sphere of few triangles becomes many spheres: the drag on them against that on the one of the same volume.
-TEST(Obstacles, DragOfManySpheresIsThatOfTheOne) {
-  const pfv::Obstacle many = pfv::obstacle_of_mesh(sphere_mesh(Vector(0.5, 0.5, 0.5), 0.2, 2), 0.08, "ball ");
-  ASSERT_GT(many.size(), 30);
+pfv::Obstacle one_sphere(const pfv::Obstacle& obstacle) {
   pfv::Obstacle one;
-  one.centre = Vector(0.5, 0.5, 0.5);
+  one.centre = obstacle.centre;
   one.centres = one.centre;
-  one.volume = many.volume;
+  one.volume = obstacle.volume;
   one.radii = Eigen::VectorXd::Constant(1, std::cbrt(one.volume * 3 / (4 * M_PI)));
   one.displaced = Eigen::VectorXd::Constant(1, one.volume);
-  for (int axis = 0; axis < 3; ++axis) {
-    pfv::ObstacleMotion motion;
-    motion.velocity = Vector::Unit(axis);
-    const Pushed of_many = push(many, motion), of_one = push(one, motion);
-    std::printf("drag along %c: %.4g of %ld spheres, %.4g of one; limit %.3g, %.3g s\n", "xyz"[axis], of_many.load.force[axis],
-                static_cast<long>(many.size()), of_one.load.force[axis], of_many.limit, of_one.limit);
-    EXPECT_NEAR(of_many.load.force[axis] / of_one.load.force[axis], 1.0, 0.1);
-    EXPECT_LT(of_many.report.force_balance_error, 1e-13);
-    EXPECT_GT(of_many.limit / of_one.limit, 0.2);  // pockets between the spheres do not brake
+  return one;
+}
+
+/// About the middle of the cube.
+Triangles turned(Triangles mesh, const Eigen::Quaterniond& turn) {
+  const Vector middle(0.5, 0.5, 0.5);
+  for (pfv::Triangle& triangle : mesh)
+    triangle = ((turn.normalized().toRotationMatrix() * (triangle.colwise() - middle)).colwise() + middle).eval();
+  return mesh;
+}
+
+/// A sphere of few triangles becomes many spheres: the drag on them against that on the one of the same volume among the
+/// same grains, however the spheres lie. Fluid between a grain that nearly touches and the creases is none.
+TEST(Obstacles, DragOfManySpheresIsThatOfTheOne) {
+  support::Random random(3);
+  const auto component = [&] { return random(-1.0, 1.0); };
+  double least = 1.0, most = 0.0, sum = 0.0;
+  int count = 0;
+  for (int sample = 0; sample < 4; ++sample) {
+    const Eigen::Quaterniond turn = sample == 0 ? Eigen::Quaterniond::Identity()
+                                                : Eigen::Quaterniond(component(), component(), component(), component());
+    const Triangles mesh = turned(sphere_mesh(Vector(0.5, 0.5, 0.5), 0.2, 2), turn);
+    const pfv::Obstacle many = pfv::obstacle_of_mesh(mesh, 0.08, "ball "), one = one_sphere(many);
+    ASSERT_GT(many.size(), 30);
+    for (int axis = 0; axis < 3; ++axis) {
+      pfv::ObstacleMotion motion;
+      motion.velocity = Vector::Unit(axis);
+      const Pushed of_many = push(many, motion, false, one), of_one = push(one, motion, false, many);
+      const double ratio = of_many.load.force[axis] / of_one.load.force[axis];
+      least = std::min(least, ratio);
+      most = std::max(most, ratio);
+      sum += ratio;
+      ++count;
+      EXPECT_LT(of_many.report.force_balance_error, 1e-13);
+      EXPECT_GT(of_many.limit / of_one.limit, 0.9);  // pockets between the spheres do not brake
+    }
   }
+  std::printf("drag on many spheres over that on one: %.3f to %.3f, mean %.3f of %d\n", least, most, sum / count, count);
+  EXPECT_GT(least, 0.83);
+  EXPECT_LT(most, 0.95);
+}
+
+/// A symmetric mesh is full of ties; the last digits of its places do not decide.
+TEST(Obstacles, SpheresDoNotDependOnOriginOrUnit) {
+  const auto expect_alike = [](const Triangles& mesh, double diameter) {
+    const pfv::Obstacle expected = pfv::obstacle_of_mesh(mesh, diameter, "body ");
+    for (const auto& [unit, away] : {std::pair(1.0, 0.1), std::pair(1e-3, 3.7)}) {
+      Triangles other = mesh;
+      for (pfv::Triangle& triangle : other) triangle = (unit * (triangle.array() + away)).matrix().eval();
+      const pfv::Obstacle found = pfv::obstacle_of_mesh(other, unit * diameter, "body ");
+      ASSERT_EQ(found.size(), expected.size()) << unit << " " << away;
+      const Eigen::Matrix3Xd strayed = found.centres / unit - (expected.centres.array() + away).matrix();
+      EXPECT_LT(strayed.cwiseAbs().maxCoeff(), 1e-6 * diameter) << unit << " " << away;
+      EXPECT_LT((found.radii / unit - expected.radii).cwiseAbs().maxCoeff(), 1e-6 * diameter) << unit << " " << away;
+    }
+  };
+  expect_alike(sphere_mesh(Vector(0.5, 0.5, 0.5), 0.2, 2), 0.08);
+  expect_alike(plate_mesh(0, 1, 0, 1, 0.3), 0.4);
+  expect_alike(block_mesh(Vector::Constant(-0.5), Vector::Constant(0.5)), 0.4);
+  expect_alike(block_mesh({-0.1, -0.1, -0.03}, {1.1, 1.1, 0.03}), 0.5);
+  expect_alike(cylinder_mesh(Vector::Zero(), 0.3, 1.0, 32), 0.3);
 }
 
 TEST(Obstacles, NothingFlowsThroughASheetOrAThinWall) {

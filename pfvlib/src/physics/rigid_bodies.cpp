@@ -98,11 +98,4 @@ ForceMatrix forces_on_bodies(const ForceMatrix& forces, const RigidBodies& bodie
   return result;
 }
 
-void drop_pairs_within(std::vector<ShearPair>& pairs, const std::vector<int>& body) {
-  const auto within = [&](const ShearPair& pair) {
-    return body[pair.first] >= 0 && body[pair.first] == body[pair.second];
-  };
-  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), within), pairs.end());
-}
-
 }  // namespace pfv

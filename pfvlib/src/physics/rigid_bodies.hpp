@@ -4,7 +4,6 @@
 #include "parallel/ranks.hpp"
 #include "physics/force_matrix.hpp"
 #include "physics/rigid_motion.hpp"
-#include "physics/shear_forces.hpp"
 #include "pfv/flow_model.hpp"
 
 #include <Eigen/Core>
@@ -46,8 +45,5 @@ RigidBodies rigid_bodies(const Eigen::Ref<const Eigen::VectorXi>& held, const st
 
 /// B^T S: a row for each body behind the others, and none of the spheres that they hold.
 ForceMatrix forces_on_bodies(const ForceMatrix& forces, const RigidBodies& bodies);
-
-/// Within one body nothing slides. `body`: of each sphere, -1 for none.
-void drop_pairs_within(std::vector<ShearPair>& pairs, const std::vector<int>& body);
 
 }  // namespace pfv

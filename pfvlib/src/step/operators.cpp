@@ -88,10 +88,9 @@ void make_force_matrices(BuiltNetwork& built, const Problem& problem, Counts& co
     built.operators.pressure_force_matrix =
         force_matrix(built.network, built.vertices, built.throats, built.operators.viscous_shares,
                      built.grains.spheres.size(), {true, false, false}, *problem.team);
-  if (problem.options.shear_viscous && !built.operators.shear_pairs) {
-    built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.grains.spheres, built.vertices);
-    if (built.grains.any_bodies) drop_pairs_within(*built.operators.shear_pairs, built.grains.body);
-  }
+  if (problem.options.shear_viscous && !built.operators.shear_pairs)
+    built.operators.shear_pairs = shear_pairs(built.network, built.throats, built.grains.spheres, built.vertices,
+                                              built.grains.any_bodies ? built.grains.body : std::vector<int>{}, built.share);
   if (!built.operators.open_water || built.operators.still_water != is_still(problem.container)) {
     find_open_water(built, problem);
     counts.open_water = open_water_count(built);
