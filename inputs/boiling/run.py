@@ -24,6 +24,7 @@ KEYS = {
     "MU": (float, 0.3, "friction between beads; walls have none"),
     "END": (float, 1.5, "duration, s"),
     "MOST": (float, 1.5, "discharge at the end, over that at which the bed should boil"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS = 2.5e-3, 2e4  # m, N/m
@@ -70,20 +71,24 @@ def prepare(shape, settings, variables):
             "Q_critical": weight / AREA / resistance}
 
 
-def couple(shape, settings):
+def room(shape, settings):
+    """Variables of both scripts."""
     out = f"{settings['OUT']}_{shape}"
     height = 0.1 + settings["N"] * BEAD / AREA / 0.15
-    variables = {"shape": shape, "N": settings["N"], "r": RADIUS, "kn": STIFFNESS, "mu": settings["MU"], "R": ROOM,
-                 "W": math.sqrt(AREA), "height": height, "fill": height - 0.1, "out": out,
-                 **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}}
-    bed = prepare(shape, settings, variables)
+    return {"shape": shape, "N": settings["N"], "r": RADIUS, "kn": STIFFNESS, "mu": settings["MU"], "R": ROOM,
+            "W": math.sqrt(AREA), "height": height, "fill": height - 0.1, "out": out,
+            **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}}
+
+
+def couple(shape, settings, variables, bed):
+    out = variables["out"]
     steps = math.ceil(settings["END"] / bed["dt"])
     every = max(1, steps // RECORDS)
     print(f"{shape}: {bed['count']} beads, {steps} steps of {bed['dt']:.3g} s", flush=True)
     said, cpu = scene.liggghts(
         SCENE, "in.boiling",
         {**variables, "viscosity": settings["VISCOSITY"], "Q_end": settings["MOST"] * bed["Q_critical"],
-         "start": bed["start"], "steps": steps, "every": every, "report": max(1, steps // 50)}, out + "_run",
+         "start": bed["start"], "words": scene.fix_words("", settings["FIX"]), "steps": steps, "every": every, "report": max(1, steps // 50)}, out + "_run",
         scene.Progress(shape, bed["start"], bed["start"] + steps, bed["dt"]))
     return {**bed, "shape": shape, "out": out, "cpu": cpu, "every": every, "limit": float(said["end"][0])}
 
@@ -150,7 +155,10 @@ def work(words):
         raise scene.BadSetting("SHAPE must be cylinder, box or both")
     if settings["N"] < 150 or settings["MOST"] <= BOILS or settings["END"] <= 0 or settings["VISCOSITY"] <= 0:
         raise scene.BadSetting(f"N must be at least 150, MOST above {BOILS}, END and VISCOSITY above 0")
-    runs = [couple(shape, settings) for shape in shapes]
+    runs = []
+    for shape in shapes:
+        variables = room(shape, settings)
+        runs.append(couple(shape, settings, variables, prepare(shape, settings, variables)))
     found = [measures(run) for run in runs]
     print(f"\nBoiling: {settings['N']} beads, {settings['END']:g} s")
     rows = []

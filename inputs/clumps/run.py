@@ -22,6 +22,7 @@ KEYS = {
     "VISCOSITY": (float, 1.0, "Pa s"),
     "COUPLING": (str, "implicit", "explicit, staged, implicit or auto"),
     "TIME": (float, 0.5, "s"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS, DENSITY = 1.5e-3, 20.0, 2500.0  # m, N/m, kg/m3
@@ -62,7 +63,7 @@ def settle(name, settings, body=None):
         {"bodies": int(bool(body)), "orientation": "orientation random" if body else "",
          "N": settings["N"], "nspheres": max(1, len(spheres)), "body": f"{out}_body.txt", "r": RADIUS, "kn": STIFFNESS,
          "mu": settings["MU"], "L": edge, "H": fill + 3.0 * RADIUS, "fill": fill, "viscosity": settings["VISCOSITY"],
-         "coupling": settings["COUPLING"], "steps": steps, "every": max(1, steps // RECORDS),
+         "words": scene.fix_words(f"coupling {settings['COUPLING']} retriangulate mean 0.03", settings["FIX"]), "steps": steps, "every": max(1, steps // RECORDS),
          "report": max(1, steps // 20), "out": out,
          **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},
         out + "_run", scene.Progress(name, 1, 1 + steps, DT))

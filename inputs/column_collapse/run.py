@@ -26,6 +26,7 @@ KEYS = {
     "SHEAR": (str, "yes", "shear_viscous: yes or no"),
     "SAMPLES": (int, 3, "columns whose means are compared, from SEED on"),
     "SEED": scene.SEED,
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS = 1e-3, 200.0  # m, N/m
@@ -36,6 +37,15 @@ STEP = 0.2 * math.sqrt(DENSITY * 4.0 / 3.0 * math.pi * RADIUS**3 / STIFFNESS)  #
 TOPS = {"low": "plane {low:.17g} symmetry pressure 0", "high": "plane {high:.17g} symmetry pressure 0",
         "closed": "plane {high:.17g} symmetry point 0 0 0 pressure 0",
         "no_slip": "plane {high:.17g} point 0 0 0 pressure 0", "extent": "extent pressure 0"}
+
+
+def geometry_of(settings):
+    """Foot, width and height of the column, length of the floor, heights of the planes above (m)."""
+    width = settings["WIDTH"] * RADIUS
+    section = settings["N"] * 4.0 / 3.0 * math.pi * RADIUS**3 / 0.57 / width  # m2, of the column
+    a = math.sqrt(section / settings["RISE"])
+    height = settings["RISE"] * a
+    return {"a": a, "W": width, "L": 6.0 * a, "height": height, "low": 1.3 * height, "high": 3.0 * height}
 
 
 def run(name, settings, geometry, top):
@@ -57,7 +67,8 @@ def sample(name, settings, geometry, top):
     said, cpu = scene.liggghts(
         SCENE, "in.column_collapse",
         {"N": settings["N"], "r": RADIUS, "kn": STIFFNESS, "mu": settings["MU"], "viscosity": settings["VISCOSITY"],
-         "wet": int(wet), "top": top or "none", "more": f"shear_viscous {settings['SHEAR']}", "settle": 20000, "steps": steps, "every": max(1, steps // 200), "out": out,
+         "wet": int(wet), "top": top or "none", "words": scene.fix_words(f"shear_viscous {settings['SHEAR']}", settings["FIX"]),
+         "settle": 20000, "steps": steps, "every": max(1, steps // 200), "out": out,
          "a": geometry["a"], "W": geometry["W"], "L": geometry["L"], "H": geometry["high"],
          **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},
         out + "_run", scene.Progress(name, 0, steps, STEP))
@@ -86,14 +97,10 @@ def work(words):
     tops = settings["TOPS"].split(",")
     if not set(tops) <= set(TOPS) or settings["SHEAR"] not in ("yes", "no"):
         raise scene.BadSetting(f"TOPS are {', '.join(TOPS)}, with commas between them; SHEAR is yes or no")
-    width = settings["WIDTH"] * RADIUS
-    section = settings["N"] * 4.0 / 3.0 * math.pi * RADIUS**3 / 0.57 / width  # m2, of the column
-    a = math.sqrt(section / settings["RISE"])
-    height = settings["RISE"] * a
-    geometry = {"a": a, "W": width, "L": 6.0 * a, "low": 1.3 * height, "high": 3.0 * height}
+    geometry = geometry_of(settings)
     runs = [run("dry", settings, geometry, None)]
     runs += [run(name, settings, geometry, TOPS[name].format(**geometry)) for name in tops]
-    print(f"\nColumn collapse: {settings['N']} beads, foot {1e3 * a:.3g} mm, height {1e3 * height:.3g} mm")
+    print(f"\nColumn collapse: {settings['N']} beads, foot {1e3 * geometry['a']:.3g} mm, height {1e3 * geometry['height']:.3g} mm")
     for found in runs:
         print(f"  {found['name']:<8s} run-out {found['run_out']:.3f}, mean way {found['moved']:.4f} of the foot, half of it after "
               f"{found['half']:.4f} s; networks {found['networks']}, CPU {found['cpu']:.0f} s")

@@ -16,6 +16,7 @@ BUOYANT = GRAVITY * (1.0 - FLUID_DENSITY / DENSITY)
 MEAN_CUBE = (0.9**3 + 1.0 + 1.1**3) / 3.0
 SOLID = 5000 * 4.0 / 3.0 * math.pi * 0.03**3 * MEAN_CUBE  # m3
 VISCOSITY = 100.0  # Pa s at 5000 grains
+VISCOSITY_KEY = (float, 0.0, "Pa s; 0: chosen from the grain size")
 
 FRICTION = 0.57735  # of grains at rest: tan 30 degrees
 # friction and sinking speed (m/s) of the grains while the bed is made

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the run.py of the scenes share: KEY=VALUE words, running LIGGGHTS and pfv with progress,
 the table of results beside their references."""
+import functools
 import json
 import pathlib
 import resource
@@ -16,6 +17,7 @@ SEED = (int, 1, "sample number, 1, 2, ...")
 TOP = (str, "plane", "plane or extent: where the flow box ends")
 SHAKE = (float, 0.0, "force that keeps each grain moving, over its weight in the fluid")
 LAW = (str, "open_throat", "conductance law; hydraulic_radius is that of the papers and the thesis")
+FIX = (str, "", "settings of fix pfv, in quotes; they win over those of the scene")
 OUT = (str, "post/sample", "where results go, without ending")
 
 
@@ -51,6 +53,23 @@ def numbers(settings, key, kind=float):
     if values[0] <= 0:
         raise BadSetting(f"{key} must be above 0")
     return values
+
+
+@functools.cache
+def fix_keywords():
+    """Of the settings of fix pfv."""
+    listed = subprocess.run([str(BIN / "pfv"), "settings", "--fix"], capture_output=True, text=True, check=True).stdout
+    return {line.split()[0] for line in listed.splitlines() if line[:1].strip()}
+
+
+def fix_words(own, given):
+    """Settings of fix pfv: the scene's own, but for those that are given as well, then the given ones."""
+    keywords, kept, keyword = fix_keywords(), [], None
+    taken = keywords & set(given.split())
+    for word in own.split():
+        keyword = word if word in keywords else keyword
+        kept += [word] if keyword not in taken else []
+    return " ".join([*kept, *given.split()])
 
 
 def primes(seed, count=5):

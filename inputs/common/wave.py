@@ -111,7 +111,7 @@ def run(folder, settings, measures, out, amplitude, duration, viscosity=None, to
     """One wave on the bed that OUT of the settings holds; `amplitude` is a formula of v_t. `shake`
     is the force that keeps each grain moving, over its weight in the fluid (in.shake)."""
     grains = settings["N"]
-    viscosity = viscosity or bed.viscosity_for(grains)
+    viscosity = viscosity or settings.get("VISCOSITY") or bed.viscosity_for(grains)
     step = step_factor * time_step(grains)
     steps = math.ceil(duration / step)
     every = max(1, steps // records)
@@ -119,13 +119,11 @@ def run(folder, settings, measures, out, amplitude, duration, viscosity=None, to
     if out != settings["OUT"]:
         shutil.copy(folder / f"{settings['OUT']}.restart", folder / f"{out}.restart")
     clear(folder, out)
-    words = words or "retriangulate 0.01"
-    if "coupling" not in words.split():
-        words += " coupling auto"
+    own = f"{words or 'retriangulate 0.01'} coupling auto conductance {settings['LAW']}"
     variables = {"r2": bed.mean_radius(grains), "LX": bed.LENGTH, "LY": bed.WIDTH,
                  "viscosity": viscosity, "time_step": step, "steps": steps, "every": every,
                  "stride": stride, "report": max(1, steps // 100), "amplitude": amplitude,
-                 "top": top_words(top, measures), "words": words, "law": settings["LAW"],
+                 "top": top_words(top, measures), "words": scene.fix_words(own, settings["FIX"]),
                  "sensors": sensor_words(measures), "out": out, "name": folder.name,
                  "g": bed.BUOYANT, "shake": shake, "shake_end": min(shake_end, duration + 1.0)}
     said, cpu = scene.liggghts(folder, f"in.{folder.name}", variables, out + "_run",

@@ -18,7 +18,8 @@ KEYS = {
     "STEP": (float, 1.0, "time step over its default"),
     "TOP": scene.TOP,
     "LAW": scene.LAW,
-    "WORDS": (str, "retriangulate mean 0.001", "more words for fix pfv"),
+    "VISCOSITY": bed.VISCOSITY_KEY,
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 THESIS = {"dense": {"porosity": 0.368, "amplitude": 1500.0},
@@ -94,7 +95,7 @@ def work(folder, kind, words):
                            settings["MADE"])
     duration = settings["AMPLITUDE"] / settings["RATE"]
     run = wave.run(folder, settings, measures, settings["OUT"], f"{settings['RATE']:g}*v_t",
-                   duration, top=settings["TOP"], words=settings["WORDS"], shake=settings["SHAKE"],
+                   duration, top=settings["TOP"], words="retriangulate mean 0.001", shake=settings["SHAKE"],
                    step_factor=settings["STEP"])
     d = describe(run, kind, settings)
     print_table(d, kind, settings)

@@ -19,7 +19,7 @@ KEYS = {
     "ACROSS": (int, 10, "grains across the box; 20 as in the example"),
     "TIME": (float, 1.0, "simulated time, s"),
     "EVERY": (int, 100, "steps between two renewals of the porosity, darcy_grid"),
-    "PFV": (str, "", "further words of fix pfv for the pores, as 'couple_every 10 retriangulate 0.05'"),
+    "FIX": (str, "", "settings of fix pfv for the pores, as 'couple_every 10 retriangulate 0.05'"),
     "COUPLE": (int, 10, "time steps between two flow steps, darcy_grid"),
     "DRAG": (str, "di_felice", "di_felice or kozeny_carman, darcy_grid"),
     "FLUX": (float, 1e-5, "inflow, m3/s"),
@@ -48,11 +48,11 @@ def time_step(across):
 
 def run_model(model, settings):
     """One run; returns what it says of itself."""
-    words = f"pfv {settings['PFV']}"
+    words = scene.fix_words("model pfv", settings["FIX"])
     if model == "darcy_grid":
         cells = " ".join(map(str, CELLS))
         every = max(1, settings["EVERY"] // settings["COUPLE"])  # of fix pfv: in flow steps
-        words = f"darcy_grid {cells} every {every} drag {settings['DRAG']} couple_every {settings['COUPLE']}"
+        words = f"model darcy_grid {cells} every {every} drag {settings['DRAG']} couple_every {settings['COUPLE']}"
     step = time_step(settings["ACROSS"])
     steps = 100 * max(1, round(settings["TIME"] / step / 100))
     out = f"{settings['OUT']}_{model}"
@@ -61,7 +61,7 @@ def run_model(model, settings):
     print(f"{model}: {steps} steps of {step:.3g} s", flush=True)
     said, cpu = scene.liggghts(
         SCENE, "in.darcy_outlet",
-        {"across": settings["ACROSS"], "model": words, "Q": settings["FLUX"],
+        {"across": settings["ACROSS"], "words": words, "Q": settings["FLUX"],
          "viscosity": settings["VISCOSITY"], "steps": steps, "record": max(1, steps // 200),
          "fields": max(1, steps // 10), "out": out},
         out, scene.Progress(model, 0, steps, step))

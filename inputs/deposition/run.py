@@ -28,6 +28,7 @@ KEYS = {
     "TOP": scene.TOP,
     "LAW": scene.LAW,
     "STRAIN": (float, 0.1, "pore strain at which the network is built anew"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, POROSITY, HEIGHT = 0.03, 0.61, 0.967  # m, of the cloud, m: thesis table 4.4
@@ -182,8 +183,9 @@ def couple(settings):
     said, cpu = scene.liggghts(SCENE, "in.deposition", {
         "N": grains, "r2": RADIUS, "LX": length, "LY": area / length, "LZ": HEIGHT,
         "viscosity": settings["VISCOSITY"], "time_step": step, "steps": steps, "every": every,
-        "stride": 20 * every, "report": max(1, steps // 100), "top": top, "law": settings["LAW"],
-        "strain": settings["STRAIN"], "E": settings["MODULUS"], "out": out,
+        "stride": 20 * every, "report": max(1, steps // 100), "top": top,
+        "words": scene.fix_words(f"coupling auto retriangulate {settings['STRAIN']} conductance {settings['LAW']}",
+                                 settings["FIX"]), "E": settings["MODULUS"], "out": out,
         **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},
         out + "_run", scene.Progress("deposition", 8203, 8203 + steps, step))
     unit = (bed.DENSITY - bed.FLUID_DENSITY) * bed.GRAVITY
@@ -239,4 +241,5 @@ def work(words):
     return scene.summary(SCENE, settings["OUT"], {**settings, **run.figures, **figures}, checks)
 
 
-scene.main("deposition", work)
+if __name__ == "__main__":
+    scene.main("deposition", work)

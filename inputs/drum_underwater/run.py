@@ -24,6 +24,7 @@ KEYS = {
     "PERIOD": (float, 4.0, "of the drum, s"),
     "TURN": (float, 0.35, "how far it turns, in turns"),
     "STRAIN": (str, "mean 0.03", "pore strain at which the network is built anew"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS, DENSITY = 2.5e-3, 1e3, 2500.0  # m, N/m, kg/m3
@@ -45,7 +46,7 @@ def turn(name, settings, viscosity=0.0):
         {"N": settings["N"], "r": RADIUS, "kn": STIFFNESS, "mu": settings["MU"], "R": ROOM, "length": LENGTH,
          "settle": settle, "steps": steps, "every": max(1, steps // 300), "report": max(1, steps // 20),
          "period": settings["PERIOD"], "wet": int(viscosity > 0.0), "viscosity": viscosity,
-         "strain": settings["STRAIN"], "out": out,
+         "words": scene.fix_words(f"retriangulate {settings['STRAIN']} coupling auto", settings["FIX"]), "out": out,
          **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"], 6))}},
         out + "_run", scene.Progress(name, 3 * settle, 3 * settle + steps, DT))
     rows = np.genfromtxt(SCENE / f"{out}_record.csv", delimiter=",", names=True)

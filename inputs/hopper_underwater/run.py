@@ -24,6 +24,7 @@ KEYS = {
     "VISCOSITY": (float, 0.25, "Pa s"),
     "TIME": (float, 0.8, "under the closed cover, s; twice that at twice the viscosity"),
     "STRAIN": (str, "mean 0.01", "pore strain at which the network is built anew"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS, DENSITY, GRAVITY = 2.5e-3, 1e3, 2500.0, 9.81  # m, N/m, kg/m3, m/s2
@@ -61,7 +62,8 @@ def discharge(name, settings, seconds, viscosity=0.0, top="sealed"):
         SCENE, "in.hopper_underwater",
         {"N": settings["N"], "r": RADIUS, "kn": STIFFNESS, "mu": settings["MU"], "H": HEIGHT + 0.001,
          "cover": HEIGHT - 1e-4, "half": TOP, "fill": OUTLET + 0.4 * (TOP - OUTLET), "wet": int(viscosity > 0.0),
-         "top": top, "viscosity": viscosity, "strain": settings["STRAIN"], "settle": settle, "steps": steps,
+         "top": top, "viscosity": viscosity,
+         "words": scene.fix_words(f"retriangulate {settings['STRAIN']}", settings["FIX"]), "settle": settle, "steps": steps,
          "every": max(1, steps // RECORDS),
          "report": max(1, steps // 20), "out": out,
          **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},

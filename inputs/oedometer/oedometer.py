@@ -25,7 +25,7 @@ KEYS = {
     "RETRIANGULATE": (float, 0.01, "pore strain"),
     "LAW": scene.LAW,
     "FIELDS": (int, 0, "instants of the consolidation written for ParaView; 0: none"),
-    "FIX": (str, "couple_every auto", "more keywords of fix pfv, in quotes"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
     "KEEP": (int, 0, "1: take the sample, dry test and permeability that OUT holds"),
 }
@@ -163,9 +163,10 @@ def couple(settings, sample, planned):
                  ("viscosity", "time_step", "stride", "every", "rest_to", "steps")}
     variables["report"] = max(1, planned["steps"] // 100)
     variables.update(common_variables(settings), dF=settings["LOAD"] * SIDE**2,
-                     piston_mass=piston_mass(grains), words=settings["FIX"])
-    if "darcy_grid" not in settings["FIX"].split():  # which has no throats
-        variables["words"] += f" retriangulate {settings['RETRIANGULATE']} conductance {settings['LAW']}"
+                     piston_mass=piston_mass(grains))
+    has_throats = "darcy_grid" not in settings["FIX"].split()
+    own = f"retriangulate {settings['RETRIANGULATE']} conductance {settings['LAW']}" if has_throats else ""
+    variables["words"] = scene.fix_words(own, settings["FIX"])
     if settings["FIELDS"]:
         variables["words"] += f" output {fields_every(settings, planned)} {out}.pvd contact_stress"
         variables["contacts"] = "yes"

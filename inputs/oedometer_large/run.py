@@ -18,7 +18,7 @@ import scene
 import terzaghi
 from plotting import plt, save_figure
 
-KEYS = {key: oedometer.KEYS[key] for key in ("N", "SEED", "RETRIANGULATE", "LAW")}
+KEYS = {key: oedometer.KEYS[key] for key in ("N", "SEED", "RETRIANGULATE", "LAW", "FIX")}
 KEYS.update(LOAD=(float, 200.0e3, "step load, Pa"),
             FIELDS=(int, 10, "instants written for ParaView"),
             OUT=scene.OUT)
@@ -112,4 +112,5 @@ def work(words):
                                                 "final": final}, checks)
 
 
-scene.main("oedometer_large", work)
+if __name__ == "__main__":
+    scene.main("oedometer_large", work)

@@ -157,4 +157,5 @@ def work(words):
     return scene.summary(SCENE, settings["OUT"], {**settings, "K": values, "box": box}, checks)
 
 
-scene.main("permeameter", work)
+if __name__ == "__main__":
+    scene.main("permeameter", work)

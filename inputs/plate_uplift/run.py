@@ -24,6 +24,7 @@ KEYS = {
     "SPEED": (float, 0.02, "of the fastest pull, m/s; the others are a half and a fifth of it"),
     "TRAVEL": (float, 1e-3, "how far the plate is pulled, m"),
     "STRAIN": (str, "mean 0.03", "pore strain at which the network is built anew"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS, DENSITY, WATER, GRAVITY = 2.5e-3, 2e3, 2500.0, 1000.0, 9.81
@@ -54,7 +55,8 @@ def pull(name, settings, speed, viscosity=0.0):
          "H": solid / (LENGTH * WIDTH) / 0.2 + 0.02, "settle": settle, "rest": rest, "steps": steps,
          "every": max(1, steps // 200), "report": max(1, steps // 10), "speed": speed, "wet": int(viscosity > 0.0),
          "viscosity": viscosity,
-         "gravity": GRAVITY * (1.0 if viscosity > 0.0 else 1.0 - WATER / DENSITY), "strain": settings["STRAIN"],
+         "gravity": GRAVITY * (1.0 if viscosity > 0.0 else 1.0 - WATER / DENSITY), 
+         "words": scene.fix_words(f"retriangulate {settings['STRAIN']}", settings["FIX"]),
          "out": out, **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},
         out + "_run", scene.Progress(name, settle + rest, settle + rest + steps, DT))
     rows = np.genfromtxt(SCENE / f"{out}_record.csv", delimiter=",", names=True)

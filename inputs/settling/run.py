@@ -22,12 +22,12 @@ KEYS = {
     "FALL": (float, 4.0, "how far a cloud settles while it is measured, in radii"),
     "SHEAR": (str, "yes", "shear_viscous: yes or no"),
     "SEED": scene.SEED,
+    "VISCOSITY": (float, 1.0, "Pa s"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS = 1e-3, 20.0  # m, N/m
-DENSITY, FLUID, VISCOSITY, GRAVITY = 2500.0, 1000.0, 1.0, 9.81
-ALONE = 2.0 / 9.0 * (DENSITY - FLUID) * GRAVITY * RADIUS**2 / VISCOSITY  # m/s
-ANSWERS = 2.0 / 9.0 * DENSITY * RADIUS**2 / VISCOSITY  # s: time in which a bead reaches it
+DENSITY, FLUID, GRAVITY = 2500.0, 1000.0, 9.81
 STEP = 0.2 * math.sqrt(DENSITY * 4.0 / 3.0 * math.pi * RADIUS**3 / STIFFNESS)  # of in.beads
 # single beads: edge and height of the tank, place of the bead (of these), what the sides and the top are
 ONES = {"in the middle": (200, 200, (0.5, 0.5, 0.5), "symmetry", "pressure 0"),
@@ -45,13 +45,19 @@ def fixed_bed(fraction):
     return (1.0 - fraction) / drag
 
 
+def alone(settings):
+    """Speed of a single bead (Stokes), m/s."""
+    return 2.0 / 9.0 * (DENSITY - FLUID) * GRAVITY * RADIUS**2 / settings["VISCOSITY"]
+
+
 def run(name, settings, variables, fall):
-    steps = math.ceil(fall * RADIUS / (ALONE * variables.pop("expected")) / STEP)
+    steps = math.ceil(fall * RADIUS / (alone(settings) * variables.pop("expected")) / STEP)
     begin = steps // 2
     out = f"{settings['OUT']}_{name}"
     said, cpu = scene.liggghts(
         SCENE, "in.settling",
-        {"r": RADIUS, "kn": STIFFNESS, "viscosity": VISCOSITY, "density": FLUID, "out": out, "more": f"shear_viscous {settings['SHEAR']}", "begin": begin,
+        {"r": RADIUS, "kn": STIFFNESS, "viscosity": settings["VISCOSITY"], "density": FLUID, "out": out,
+         "words": scene.fix_words(f"coupling auto shear_viscous {settings['SHEAR']}", settings["FIX"]), "begin": begin,
          "steps": steps, "every": max(1, steps // 20),
          **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}, **variables},
         out + "_run", scene.Progress(name, 0, steps, STEP))
@@ -94,9 +100,9 @@ def draw(clouds, base):
 def work(words):
     settings = scene.parse(words, KEYS)
     fractions = scene.numbers(settings, "C")
-    if settings["N"] < 50 or fractions[-1] > 0.45 or settings["FALL"] <= 0:
-        raise scene.BadSetting("N must be at least 50, C at most 0.45, FALL above 0")
-    print(f"Settling: alone a bead falls at {1e3 * ALONE:.3g} mm/s")
+    if settings["N"] < 50 or fractions[-1] > 0.45 or min(settings["FALL"], settings["VISCOSITY"]) <= 0:
+        raise scene.BadSetting("N must be at least 50, C at most 0.45, FALL and VISCOSITY above 0")
+    print(f"Settling: alone a bead falls at {1e3 * alone(settings):.3g} mm/s")
     rows, ones = [], {}
     for number, name in enumerate(ONES if settings["ONE"] else ()):
         found = ones[name] = one(number, settings)

@@ -24,6 +24,8 @@ KEYS = {
     "END": (float, 2.0, "duration, s"),
     "TOP": scene.TOP,
     "LAW": scene.LAW,
+    "VISCOSITY": bed.VISCOSITY_KEY,
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 
@@ -79,4 +81,5 @@ def work(words):
     return scene.summary(SCENE, settings["OUT"], {**settings, "runs": found}, checks)
 
 
-scene.main("shear_viscous", work)
+if __name__ == "__main__":
+    scene.main("shear_viscous", work)

@@ -28,7 +28,7 @@ KEYS = {
     "STRAIN": (float, 0.3, "shear strain"),
     "VISCOUS": (float, 0.1, "shear strain of the tests in viscous fluids"),
     "VISCOSITIES": (str, "10,100,1000", "of these, Pa s"),
-    "WORDS": (str, "", "more of fix pfv"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS = 0.03  # m
@@ -43,7 +43,7 @@ GRAIN = 4 / 3 * math.pi * RADIUS**3 * bed.MEAN_CUBE  # m3, the mean
 NUDGES = [1e-12, 1e-9, 1e-6, 1e-4, 1e-3]
 # (script, whether the upper plate is a piston, words)
 TESTS = {"drained": ("drained", 1, "couple_every 1"), "undrained": ("undrained", 1, "couple_every 1"),
-         "dry": ("dry", 0, "-"), "viscous": ("undrained", 0, "couple_every 1 shear_viscous yes coupling auto")}
+         "dry": ("dry", 0, ""), "viscous": ("undrained", 0, "couple_every 1 shear_viscous yes coupling auto")}
 
 
 def edge(settings):
@@ -103,7 +103,7 @@ def test(settings, sample, name, viscosity=THIN, nudge=0.0):
     every = max(1, round((strain / rate + ramp / 2) / STEP / ROWS))
     _, cpu = scene.liggghts(
         SCENE, "in.simple_shear",
-        {**common(settings), "fluid": fluid, "pressed": pressed, "words": f"{words} {settings['WORDS']}",
+        {**common(settings), "fluid": fluid, "pressed": pressed, "words": scene.fix_words(words, settings["FIX"]),
          "sample": sample["name"], "out": out, "lid": f"{settings['OUT']}_lid.stl", "H": sample["height"],
          "last": sample["last"], "rate": rate, "ramp": ramp, "steps": every * ROWS, "every": every,
          "viscosity": viscosity, "bulk_modulus": BULK_MODULUS, "nudge": nudge},

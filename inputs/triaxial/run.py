@@ -28,7 +28,7 @@ KEYS = {
     "DRAINED": (float, 0.2, "axial strain of the drained tests"),
     "VISCOSITY": (float, 2.0, "Pa s"),
     "TESTS": (str, "all", "all, or paths: of the dense sample alone, undrained beside dry"),
-    "WORDS": (str, "", "more of fix pfv"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS = 0.03  # m
@@ -80,7 +80,7 @@ def test(settings, sample, fluid, rate, nudge=0.0):
     _, cpu = scene.liggghts(
         SCENE, "in.triaxial",
         {"fluid": fluid, "sides": "constant_volume" if fluid == "dry" else "pistons",
-         "words": f"couple_every {COUPLE_EVERY[fluid]} {settings['WORDS']}",
+         "words": scene.fix_words(f"couple_every {COUPLE_EVERY[fluid]}", settings["FIX"]),
          "sample": sample["name"], "plates": settings["OUT"], "out": out, "r2": RADIUS, "S": settings["STRESS"],
          **dict(zip(("x0", "x1", "y0", "y1", "z0", "z1"), sample["plates"])), "last": sample["last"], "rate": rate,
          "ramp": ramp, "steps": every * ROWS, "every": every, "piston_mass": PISTON_MASS * settings["N"],

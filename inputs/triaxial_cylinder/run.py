@@ -26,6 +26,7 @@ KEYS = {
     "VISCOSITY": (float, 0.4, "Pa s"),
     "STRESS": (float, 16e3, "axial stress at the end, Pa; it begins with a quarter"),
     "TIME": (float, 0.4, "in which the load grows, s"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS, STIFFNESS, DENSITY = 2.5e-3, 1e4, 2500.0  # m, N/m, kg/m3
@@ -61,7 +62,7 @@ def couple(settings):
         SCENE, "in.triaxial_cylinder",
         {"cell": settings["CELL"], "N": settings["N"], "r": RADIUS, "kn": STIFFNESS, "mu": settings["MU"], "R": ROOM,
          "height": filled + 0.02, "H0": filled, "F0": force / 4, "F1": force, "piston_mass": 0.05, "vel_max": 5.0,
-         "viscosity": settings["VISCOSITY"], "settle": SETTLE, "press": PRESS, "rest": REST,
+         "viscosity": settings["VISCOSITY"], "words": scene.fix_words("", settings["FIX"]), "settle": SETTLE, "press": PRESS, "rest": REST,
          "growth": every * 100 if every > 1 else growth, "hold": hold, "every": every, "report": max(1, growth // 50),
          "planes": PLANES, "out": settings["OUT"],
          **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}},

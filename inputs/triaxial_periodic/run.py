@@ -23,7 +23,7 @@ KEYS = {
     "STRAIN": (float, 0.12, "axial strain of the undrained tests"),
     "DRAINED": (float, 0.2, "axial strain of the drained tests"),
     "VISCOSITY": (float, 0.02, "of the undrained tests, Pa s"),
-    "WORDS": (str, "", "more of fix pfv"),
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 RADIUS = 0.03  # m
@@ -75,7 +75,7 @@ def test(settings, sample, fluid, nudge=0.0):
     every = max(1, round((strain / rate + ramp / 2) / STEP / ROWS))
     _, cpu = scene.liggghts(
         SCENE, "in.triaxial_periodic",
-        {"fluid": SCRIPTS[fluid], "words": f"couple_every 1 {settings['WORDS']}", "gain": gain(settings, sample, fluid),
+        {"fluid": SCRIPTS[fluid], "words": scene.fix_words("couple_every 1", settings["FIX"]), "gain": gain(settings, sample, fluid),
          "sample": sample["name"], "out": out, "r2": RADIUS, "S": settings["STRESS"],
          **dict(zip(("X0", "Y0", "Z0"), sample["lengths"])), "last": sample["last"], "rate": rate, "ramp": ramp,
          "steps": every * ROWS, "every": every, "bulk_modulus": BULK_MODULUS, "nudge": nudge,

@@ -12,4 +12,5 @@ sys.path.insert(0, str(SCENE.parent / "common"))
 import scene
 import wave_rising
 
-scene.main("wave_loose", lambda words: wave_rising.work(SCENE, "loose", words))
+if __name__ == "__main__":
+    scene.main("wave_loose", lambda words: wave_rising.work(SCENE, "loose", words))

@@ -28,6 +28,8 @@ KEYS = {
     "SHAKE": scene.SHAKE,
     "TOP": scene.TOP,
     "LAW": scene.LAW,
+    "VISCOSITY": bed.VISCOSITY_KEY,
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 LIQUEFIED = 0.8  # of grad H / i_c: the thesis' nearly complete liquefaction
@@ -156,4 +158,5 @@ def work(words):
                          {**settings, "t_c": consolidation, "runs": rows}, checks)
 
 
-scene.main("wave_oscillating", work)
+if __name__ == "__main__":
+    scene.main("wave_oscillating", work)

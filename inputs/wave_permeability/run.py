@@ -27,6 +27,7 @@ KEYS = {
     "SHAKE_END": (float, 0.5, "how long, s"),
     "TOP": scene.TOP,
     "LAW": scene.LAW,
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 
@@ -107,4 +108,5 @@ def work(words):
     return scene.summary(SCENE, settings["OUT"], {**settings, "runs": found}, checks)
 
 
-scene.main("wave_permeability", work)
+if __name__ == "__main__":
+    scene.main("wave_permeability", work)

@@ -22,6 +22,7 @@ KEYS = {
     "WIDTH": (float, 3.0, "of the bed across the wave, mean diameters"),
     "SEED": scene.SEED,
     "LAW": scene.LAW,
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 LENGTH, DEPTH, AMPLITUDE = 2.0, 1.0, 1000.0  # m, m, Pa
@@ -60,7 +61,8 @@ def one_size(grains, settings):
     print(f"bed of {grains} grains, mean diameter {2 * radius:.4f} m", flush=True)
     seeds = {f"s{k + 1}": prime for k, prime in enumerate(scene.primes(settings["SEED"]))}
     _, cpu = scene.liggghts(SCENE, "in.wave_still", {
-        "N": grains, "r2": radius, "LY": across, "amplitude": AMPLITUDE, "law": settings["LAW"], "out": out, **seeds},
+        "N": grains, "r2": radius, "LY": across, "amplitude": AMPLITUDE,
+        "words": scene.fix_words(f"conductance {settings['LAW']}", settings["FIX"]), "out": out, **seeds},
         out, scene.Progress("bed", 0, 12001, 0.0))
     box = (0.0, LENGTH, 0.0, across, 0.0, DEPTH)
     permeability = [scene.pfv_solve(
@@ -151,4 +153,5 @@ def work(words):
     return scene.summary(SCENE, settings["OUT"], {"sizes": results}, rows)
 
 
-scene.main("wave_still", work)
+if __name__ == "__main__":
+    scene.main("wave_still", work)

@@ -27,7 +27,8 @@ KEYS = {
     "YADE": (str, "no", "beds in YADE as well, made with these local dampings (0,0.2), where it is installed"),
     "TOP": scene.TOP,
     "LAW": scene.LAW,
-    "WORDS": (str, "retriangulate mean 0.002", "more words for fix pfv"),
+    "VISCOSITY": bed.VISCOSITY_KEY,
+    "FIX": scene.FIX,
     "OUT": scene.OUT,
 }
 AVERAGED = 0.05  # s, before and after the instant of a row
@@ -47,7 +48,7 @@ def means_at(run, instant):
 def wave_on(settings, measures, rate, out):
     duration = settings["AMPLITUDE"] / settings["RATE"]
     return wave.run(SCENE, settings, measures, out, f"{rate:g}*v_t", duration, top=settings["TOP"],
-                    words=settings["WORDS"])
+                    words="retriangulate mean 0.002")
 
 
 def described(settings, made, seed, program, measures, runs):

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The table of settings: its page is up to date, and what is not read is refused."""
+import os
 import pathlib
 import re
+import sys
 import unittest
 
 from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest
@@ -9,6 +11,10 @@ from command import DENSE, THROUGH_FLOW, UNIT_BOX, CommandTest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOC = ROOT / "doc"
 KEYWORDS = ROOT / "pfvlib/python/keywords.cmake"
+
+os.environ.setdefault("PFV_BIN", str(pathlib.Path(os.environ["PFV_COMMAND"]).parent))
+sys.path.append(str(ROOT / "inputs/common"))
+import scene  # noqa: E402
 
 
 class Settings(CommandTest):
@@ -31,6 +37,14 @@ class Settings(CommandTest):
         for name, _, _, _, fix, *_ in self.rows():
             if fix.startswith("*"):
                 self.assertIn(f"\n{name} values = ", "\n" + syntax)
+
+    def test_settings_that_a_user_gives_to_a_scene_take_the_place_of_its_own(self):
+        own = "coupling auto retriangulate mean 0.03 conductance open_throat"
+        self.assertEqual(scene.fix_words(own, ""), own)
+        self.assertEqual(scene.fix_words(own, "retriangulate 0.1 couple_every auto error 0.3"),
+                         "coupling auto conductance open_throat retriangulate 0.1 couple_every auto error 0.3")
+        self.assertEqual(scene.fix_words(own, "coupling explicit conductance hydraulic_radius"),
+                         "retriangulate mean 0.03 coupling explicit conductance hydraulic_radius")
 
     def test_the_page_of_the_solvers_has_what_the_command_prints(self):
         table = self.run_pfv("settings", "--solvers").stdout
