@@ -2,8 +2,10 @@
 // Containers along whose axis the packing repeats.
 #include "pfv/error.hpp"
 #include "pfv/flow.hpp"
+#include "pfv/io.hpp"
 #include "support/boxes.hpp"
 #include "support/containers.hpp"
+#include "support/data_file.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -62,6 +64,24 @@ Found found_in(const pfv::Container& container, const pfv::PackingArrays& packin
   pfv::Flow flow(container, viscosity_one());
   const Eigen::Matrix3Xd forces = flow.evaluate(packing.view()).total;
   return {flow.report(), forces};
+}
+
+/// 25 of the grains of a run in a pipe of 5 mm: three cells at its wall, whose centres are 0.0005 of the spacing
+/// apart, are one pore, and each image used to take another of them for its centre.
+TEST(PeriodicContainers, ImagesOfAPoreHaveOneCentre) {
+  const Eigen::Vector3d along = Eigen::Vector3d::UnitZ();
+  pfv::Container pipe = pfv::container_of({plane_face("start", -along, {0.0, 0.0, 0.0}), plane_face("end", along, 0.02 * along),
+                                           cylinder_face("shell", along, {0.0, 0.0, 0.0}, 0.005)});
+  pipe.periodic[2] = true;
+  pipe.pressure_gradient[2] = -1.0;
+  pfv::PackingArrays grains = pfv::read_packing(data_file("pipe_periodic_25.csv"));
+  const Found found = found_in(pipe, grains);
+  EXPECT_LT(found.report.force_balance_error, 1e-12);
+  for (const double shift : {0.0003, 0.0051, 0.0098}) {
+    pfv::PackingArrays moved = grains;
+    moved.positions.row(2).array() += shift;
+    EXPECT_NEAR(*found_in(pipe, moved).report.permeability / *found.report.permeability, 1.0, 1e-9);
+  }
 }
 
 TEST(PeriodicContainers, AnyPartOfAnEndlessTubeIsTheSame) {

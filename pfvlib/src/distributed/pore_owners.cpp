@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "distributed/pore_owners.hpp"
 
+#include "network/canonical_order.hpp"
 #include "pfv/error.hpp"
 
 #include <algorithm>
@@ -14,16 +15,8 @@ namespace pfv {
 
 namespace {
 
-/// The vertices of a pore's first cell, by which all ranks know it.
-using PoreName = std::array<std::int64_t, 4>;
-
-PoreName name_of(const std::array<Vertex, 4>& cell, const Spheres& spheres) {
-  PoreName name;
-  for (int i = 0; i < 4; ++i)
-    name[i] = is_wall(cell[i]) ? std::numeric_limits<std::int64_t>::min() + wall_number(cell[i]) : spheres.ids[cell[i]];
-  std::sort(name.begin(), name.end());
-  return name;
-}
+/// That of a pore's first cell, by which all ranks know it.
+using PoreName = CellName;
 
 std::vector<int> first_cell_of_pores(const PoreNetwork& network) {
   std::vector<int> first(network.pores(), -1);
@@ -70,7 +63,7 @@ Sorted sort_pores(const PoreNetwork& network, const ActiveGrains& grains, const 
     if (!share.whole_pores[pore]) continue;
     const auto& cell = network.cell_vertices[first[pore]];
     const int owner = halo.owner_of(grains.columns[cell[0]]);
-    const PoreName name = name_of(cell, grains.spheres);
+    const PoreName name = cell_name(cell, grains.spheres);
     if (owner == share.ranks->own()) {
       share.own_pores[pore] = 1;
       sorted.own.push_back({name, pore});

@@ -2,6 +2,7 @@
 #include "network/canonical_order.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace pfv {
@@ -130,6 +131,14 @@ std::vector<int> order_of_cells(const std::vector<std::array<Vertex, 4>>& cells,
   std::vector<int> order(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) order[c] = names[c].cell;
   return order;
+}
+
+CellName cell_name(const std::array<Vertex, 4>& cell, const Spheres& spheres) {
+  CellName name;
+  for (int i = 0; i < 4; ++i)
+    name[i] = is_wall(cell[i]) ? std::numeric_limits<std::int64_t>::min() + wall_number(cell[i]) : spheres.ids[cell[i]];
+  std::sort(name.begin(), name.end());
+  return name;
 }
 
 void sort_by_ids(std::vector<int>& columns, const Spheres& spheres) {

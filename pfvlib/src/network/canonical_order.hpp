@@ -41,6 +41,11 @@ void arrange(std::array<Vertex, 4>& vertices, std::array<int, 4>& opposite, cons
 /// last. A vertex k >= 0 counts here as the k-th of `spheres` along the curve.
 std::vector<int> order_of_cells(const std::vector<std::array<Vertex, 4>>& cells, int spheres);
 
+/// The vertices of a cell by the ids of their spheres, ascending, walls first: the same for all images of a cell and on
+/// all ranks.
+using CellName = std::array<std::int64_t, 4>;
+CellName cell_name(const std::array<Vertex, 4>& cell, const Spheres& spheres);
+
 /// Columns by the ids of their spheres.
 void sort_by_ids(std::vector<int>& columns, const Spheres& spheres);
 

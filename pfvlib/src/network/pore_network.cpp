@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "network/pore_network.hpp"
 
+#include "network/canonical_order.hpp"
 #include "network/disjoint_sets.hpp"
 #include "network/facets.hpp"
 #include "network/periodic_images.hpp"
@@ -70,15 +71,17 @@ std::vector<int> join_cells(const CellCentres& centres, const std::vector<Facet>
   return first;
 }
 
-/// The centre of a pore is the dual vertex of one of its cells: not a flat one if it has others, and
-/// one with as many walls as possible, so that it lies on the faces that the pore touches.
-void choose_pore_centres(PoreNetwork& network, int pores, const std::vector<char>& flat) {
+/// The centre of a pore is the dual vertex of one of its cells: not a flat one if it has others, and one with as many
+/// walls as possible, so that it lies on the faces that the pore touches; of several such the first by name, so
+/// that all images of a pore take the same one: beside a round wall they may be far apart.
+void choose_pore_centres(PoreNetwork& network, int pores, const std::vector<char>& flat, const Spheres& spheres) {
   std::vector<int> chosen(pores, -1), rank(pores, -1);
+  const auto name = [&](int cell) { return cell_name(network.cell_vertices[cell], spheres); };
   for (int c = 0; c < network.cells(); ++c) {
     const auto& vertices = network.cell_vertices[c];
     const auto walls = static_cast<int>(std::count_if(vertices.begin(), vertices.end(), is_wall));
     const int pore = network.cell_pore[c], own = walls + (flat[c] ? 0 : 4);
-    if (own <= rank[pore]) continue;
+    if (own < rank[pore] || (own == rank[pore] && !(name(c) < name(chosen[pore])))) continue;
     rank[pore] = own;
     chosen[pore] = c;
   }
@@ -87,12 +90,13 @@ void choose_pore_centres(PoreNetwork& network, int pores, const std::vector<char
     network.pore_centres.col(pore) = network.cell_centres.col(chosen[pore]);
 }
 
-void make_pores_of_cells(PoreNetwork& network, const std::vector<int>& first, const std::vector<char>& flat) {
+void make_pores_of_cells(PoreNetwork& network, const std::vector<int>& first, const std::vector<char>& flat,
+                         const Spheres& spheres) {
   network.cell_pore.assign(network.cells(), -1);
   int pores = 0;
   for (int c = 0; c < network.cells(); ++c)  // the first of a pore has its number already
     network.cell_pore[c] = first[c] == c ? pores++ : network.cell_pore[first[c]];
-  choose_pore_centres(network, pores, flat);
+  choose_pore_centres(network, pores, flat, spheres);
   network.pore_faces.assign(pores, 0);
   for (int c = 0; c < network.cells(); ++c)
     for (const Vertex vertex : network.cell_vertices[c])
@@ -212,7 +216,7 @@ PoreNetwork network_of(Cells&& cells, const Spheres& spheres, double spacing) {
   network.cell_vertices = std::move(cells.triangulation.vertices);
   network.cell_neighbours = std::move(cells.triangulation.neighbours);
   network.hidden = std::move(cells.triangulation.hidden);
-  make_pores_of_cells(network, first, cells.centres.flat);
+  make_pores_of_cells(network, first, cells.centres.flat, spheres);
   group_facets_into_throats(network, facets);
   return network;
 }

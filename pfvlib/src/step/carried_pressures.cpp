@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pressures of a compressible fluid on a new network.
+#include "network/canonical_order.hpp"
 #include "network/pore_network.hpp"
 #include "step/built_network.hpp"
 
@@ -13,19 +14,10 @@ namespace pfv {
 
 namespace {
 
-/// The vertices of each cell by the ids of their grains, ascending, with the number of the cell.
-std::vector<std::pair<std::array<std::int64_t, 4>, int>> named_cells(const BuiltNetwork& built) {
-  constexpr std::int64_t walls = std::numeric_limits<std::int64_t>::min();
-  std::vector<std::pair<std::array<std::int64_t, 4>, int>> names(built.network.cells());
-  for (int c = 0; c < built.network.cells(); ++c) {
-    names[c].second = c;
-    for (int i = 0; i < 4; ++i) {
-      const Vertex vertex = built.network.cell_vertices[c][i];
-      names[c].first[i] =
-          is_wall(vertex) ? walls + wall_number(vertex) : built.vertices.ids[vertex];
-    }
-    std::sort(names[c].first.begin(), names[c].first.end());
-  }
+/// The name of each cell with its number, by the names.
+std::vector<std::pair<CellName, int>> named_cells(const BuiltNetwork& built) {
+  std::vector<std::pair<CellName, int>> names(built.network.cells());
+  for (int c = 0; c < built.network.cells(); ++c) names[c] = {cell_name(built.network.cell_vertices[c], built.vertices), c};
   std::sort(names.begin(), names.end());
   return names;
 }

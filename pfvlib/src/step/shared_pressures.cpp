@@ -15,9 +15,6 @@ namespace pfv {
 
 namespace {
 
-/// The vertices of a cell by the ids of their spheres, ascending, walls first.
-using CellName = std::array<std::int64_t, 4>;
-
 struct NamedPressure {
   CellName name;
   double pressure;
@@ -26,14 +23,7 @@ struct NamedPressure {
 bool before(const NamedPressure& a, const NamedPressure& b) { return a.name < b.name; }
 
 CellName name_of_cell(const BuiltNetwork& built, int cell) {
-  CellName name;
-  for (int i = 0; i < 4; ++i) {
-    const Vertex vertex = built.network.cell_vertices[cell][i];
-    name[i] = is_wall(vertex) ? std::numeric_limits<std::int64_t>::min() + wall_number(vertex)
-                              : built.vertices.ids[vertex];
-  }
-  std::sort(name.begin(), name.end());
-  return name;
+  return cell_name(built.network.cell_vertices[cell], built.vertices);
 }
 
 /// The rank that is told of a cell of this name.
