@@ -24,7 +24,7 @@ debootstrap --variant=minbase --include=ca-certificates bookworm "$chroot" "$mir
   { tail -5 "$build/debootstrap.log"; exit 1; }
 # the registry as this machine is set up for it
 rm -f "$chroot/etc/apt/sources.list"
-cp -a /etc/apt/sources.list.d /etc/apt/apt.conf.d "$chroot/etc/apt/"
+cp -a /etc/apt/sources.list* /etc/apt/apt.conf.d "$chroot/etc/apt/"
 cp -L /etc/resolv.conf /etc/hosts "$chroot/etc/"
 mount -t proc proc "$chroot/proc"
 
