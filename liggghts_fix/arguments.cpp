@@ -66,6 +66,8 @@ void take_container_plane(Words& words, PfvFaceSource& source) {
   source.surface = pfv::Surface::plane(-inward, point);
 }
 void take_container_extent(Words& words, PfvFaceSource& source) {
+  if (!words.begins("x") && !words.begins("y") && !words.begins("z"))
+    words.fail("in a container `extent` must be followed by an axis and lo or hi, as in `extent z hi`");
   const int axis = words.axis();
   const bool upper = words.take("hi");
   if (!upper && !words.take("lo")) words.fail("extent AXIS must be followed by lo or hi");
@@ -319,11 +321,19 @@ constexpr Keyword keywords[]{{"container", false, parse_container},
                              {"history", false, parse_history},
                              {"culprits", false, parse_culprits}};
 
-std::string settings_with(bool pfv::Hosts::*host) {
-  std::string names;
+std::vector<std::string> settings_with(bool pfv::Hosts::*host) {
+  std::vector<std::string> names;
   for (const pfv::Setting& setting : pfv::all_settings())
-    if (setting.hosts.*host) append(names, setting.name);
+    if (setting.hosts.*host) names.emplace_back(setting.name);
   return names;
+}
+
+/// What a word is that is none of the names.
+std::string not_among(const std::string& word, const std::vector<std::string>& names) {
+  const std::string meant = pfv::meant_by(word, names);
+  std::string known;
+  for (const std::string& name : names) append(known, name);
+  return "'" + word + "'" + (meant.empty() ? "; there are " : meant + " There are ") + known;
 }
 
 void parse_keyword(Words& words, PfvSettings& settings) {
@@ -336,9 +346,9 @@ void parse_keyword(Words& words, PfvSettings& settings) {
       words.fail(keyword + " is given twice; give it once");
     return one.parse(words, settings);
   }
-  std::string known = settings_with(&pfv::Hosts::fix);
-  for (const Keyword& one : keywords) append(known, one.name);
-  throw pfv::InputError("unknown keyword '" + keyword + "'; there are " + known + "; and behind a face " +
+  std::vector<std::string> known = settings_with(&pfv::Hosts::fix);
+  for (const Keyword& one : keywords) known.emplace_back(one.name);
+  throw pfv::InputError("unknown keyword " + not_among(keyword, known) + "; and behind a face " +
                         pfv::names_of<pfv::Wall>(", ") + ", " + boundary_forms());
 }
 
@@ -446,8 +456,10 @@ int modify_pfv(PfvSettings& settings, int narg, char** arg) {
   } else if (keyword == "gradient") {
     parse_gradient(words, changed);
   } else if (!modify_face(keyword, words, changed)) {
-    throw pfv::InputError("fix_modify knows no keyword '" + keyword + "'; there are " +
-                          settings_with(&pfv::Hosts::modify) + ", gradient, " + pfv::names_of_boundaries());
+    std::vector<std::string> known = settings_with(&pfv::Hosts::modify);
+    known.emplace_back("gradient");
+    for (const pfv::BoundaryKind& kind : pfv::boundary_kinds) known.emplace_back(kind.name);
+    throw pfv::InputError("fix_modify knows no keyword " + not_among(keyword, known));
   }
   check_all(changed);
   settings = changed;

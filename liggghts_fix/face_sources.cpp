@@ -131,7 +131,7 @@ void PfvFaceSources::bind(const PfvSettings& settings) {
 
 void PfvFaceSources::bind_wall(const PfvFaceSource& source, int number) {
   auto* wall = dynamic_cast<FixWallGran*>(find_fix(number, source.fix_id));
-  if (!wall) fail(number, "fix '" + source.fix_id + "' is no wall/gran");
+  if (!wall) fail(number, "fix '" + source.fix_id + "' is no wall/gran; name one that is a primitive plane, or give `plane X`");
   if (wall->is_mesh_wall())
     fail(number, "fix '" + source.fix_id + "' is a mesh wall; name its mesh with `mesh FIX_ID`");
   const std::string what = "face " + names_[number] + ": wall '" + source.fix_id + "' ";
@@ -150,7 +150,8 @@ void PfvFaceSources::bind_wall(const PfvFaceSource& source, int number) {
     fail(number, "fix '" + source.fix_id + "' is a cylinder; a face of a box needs a plane: use `container` and "
                  "give each wall a face of its own");
   if (surface.normal[number / 2] != 1.0)
-    fail(number, "wall '" + source.fix_id + "' is not normal to the " + axis_name(number) + " axis");
+    fail(number, "wall '" + source.fix_id + "' is not normal to the " + axis_name(number) + " axis; name one that is, or use "
+                 "`container` and give each wall a face of its own");
   positions_[number] = surface.offset;
 }
 
@@ -395,9 +396,17 @@ void PfvFaceSources::follow_grains(const PfvGrainTotals& grains) {
     if (container_) shapes_[number].surface.offset = upper ? extreme : -extreme;
     positions_[number] = extreme;
   }
-  for (int axis = 0; axis < 3 && !container_; ++axis)
-    if (!(positions_[2 * axis] < positions_[2 * axis + 1]) && !followers().empty())
-      throw pfv::InputError("along " + std::string(1, "xyz"[axis]) + " its faces leave no room between them" + followers());
+}
+
+void PfvFaceSources::require_room() const {
+  for (int lower = 0; lower < count(); lower += 2) {
+    if (positions_[lower] < positions_[lower + 1]) continue;
+    std::ostringstream text;
+    text << "along " << axis_name(lower) << " its faces leave no room between them: " << names_[lower] << " is at "
+         << positions_[lower] << " m, " << names_[lower + 1] << " at " << positions_[lower + 1] << " m";
+    const bool follows = sources_[lower].kind == Source::extent || sources_[lower + 1].kind == Source::extent;
+    throw pfv::InputError(text.str() + (follows ? followers() : "; give each the wall on its side"));
+  }
 }
 
 std::string PfvFaceSources::followers() const {

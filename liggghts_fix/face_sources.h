@@ -46,10 +46,12 @@ class PfvFaceSources : protected Pointers {
   /// Whether `follow_grains` has anything to do.
   bool wants_grains() const;
   /// Puts `extent` faces at the extremes of the grains, where the flow is; at the simulation box's sides until there are
-  /// any. Throws pfv::InputError where one is then beyond the opposite face of the box.
+  /// any.
   void follow_grains(const PfvGrainTotals& grains);
   /// For messages: where the `extent` faces are and what to do where they are beyond others; empty without any.
   std::string followers() const;
+  /// Throws pfv::InputError where two faces of a box leave no room; after `follow_grains`.
+  void require_room() const;
 
   /// m; of a container's faces a number that changes with their place.
   const std::vector<double>& positions() const { return positions_; }

@@ -185,10 +185,10 @@ void FixPfv::check_cell() {
 void FixPfv::check_variables() {
   for (const PfvBinding& binding : settings_.bindings) {
     const int index = input->variable->find(const_cast<char*>(binding.variable.c_str()));
-    if (index < 0)
-      stop(FLERR, "there is no variable '" + binding.variable + "'");
+    const std::string remedy = "; define `variable " + binding.variable + " equal ...` before the run";
+    if (index < 0) stop(FLERR, "there is no variable '" + binding.variable + "' for v_" + binding.variable + remedy);
     if (!input->variable->equalstyle(index))
-      stop(FLERR, "variable '" + binding.variable + "' is not of equal style");
+      stop(FLERR, "variable '" + binding.variable + "' is not of equal style" + remedy);
   }
 }
 
@@ -325,6 +325,7 @@ void FixPfv::setup(int) {
     for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.grains(), ranks_))
       warn_of(warning);
     warn_of_surfaces_at_rest();
+    warn_of_likely_slips();
     flow_.prepare(container_, settings_, grains_.packing(), flow_step(), ranks_.library());
     check_servos();
     call_flow(flow_step(), false);

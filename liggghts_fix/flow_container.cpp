@@ -123,6 +123,7 @@ void FixPfv::place_faces(pfv::Container& container) {
       container = std::move(whole);
     }
   } else {
+    faces_.require_room();
     pfv::Box box = *pfv::box_of(container);
     for (const pfv::Face face : pfv::all_faces)
       (pfv::is_upper(face) ? box.upper : box.lower)[pfv::axis_of(face)] =
@@ -196,6 +197,30 @@ void FixPfv::warn_of(const std::string& problem) const {
 void FixPfv::warn_of_surfaces_at_rest() const {
   for (const std::string& line : faces_.surfaces_at_rest()) warn_of(line);
   for (const std::string& line : obstacles_.surfaces_at_rest()) warn_of(line);
+}
+
+/// A strain in per cent, sensors in another unit than the script's. Where the flow is.
+void FixPfv::warn_of_likely_slips() const {
+  constexpr double large = 0.3, never = 100.0;
+  const double strain = settings_.options.retriangulation_strain;
+  std::ostringstream text;
+  if (settings_.given.count("retriangulate") && strain >= large && strain < never) {
+    text << "`retriangulate " << strain << "` lets the pores change by " << 100.0 * strain
+         << " % before the network is built anew; a strain of 1 % is 0.01";
+    warn_of(text.str());
+  }
+  if (!settings_.sensors) return;
+  for (const Eigen::Vector3d& place : settings_.sensors->places) {
+    Eigen::Matrix3Xd wrapped = place;
+    cell_.wrap(wrapped);
+    const double touching = 1e-9 * (container_.upper - container_.lower).norm();
+    const auto is_beyond = [&](const pfv::ContainerFace& face) { return face.surface.distance(wrapped) < -touching; };
+    if (std::none_of(container_.faces.begin(), container_.faces.end(), is_beyond)) continue;
+    text.str("");
+    text << "the sensor at (" << place[0] << ", " << place[1] << ", " << place[2]
+         << ") m is outside the room of the fluid: it reads the pressure of the nearest place in it";
+    warn_of(text.str());
+  }
 }
 
 /// A face goes on where its mesh ends: a gate, a plate with an opening. Where the flow is.

@@ -116,7 +116,7 @@ std::vector<std::string> warnings_of_unseen_walls(const std::vector<PfvUnseenWal
       const Deepest deepest = deepest_in(container, wall.triangles);
       if (deepest.depth <= touching * mean_radius) continue;
       text << "mesh '" << wall.id << "' stands in the fluid, which does not see it: it reaches " << deepest.depth
-           << " m into it at (" << deepest.place.transpose() << "); water flows through it, and it displaces none"
+           << " m into it at (" << deepest.place[0] << ", " << deepest.place[1] << ", " << deepest.place[2] << "); water flows through it, and it displaces none"
            << remedy(container, wall);
     }
     warnings.push_back(text.str());

@@ -114,6 +114,11 @@ class Control(CoupledTest):
         for force in forces(read_dump(self.folder / "d.dump")[0]).values():
             self.assertEqual(max(abs(v) for v in force), 0.0)
 
+    def test_a_strain_in_per_cent_is_asked_about(self):
+        said = self.liggghts(HEAD + f"fix flow all pfv {FLOW} retriangulate mean 1\nrun 0\n")
+        self.assertIn("`retriangulate 1` lets the pores change by 100 % before", said)
+        self.assertNotIn("lets the pores change", self.liggghts(HEAD + f"fix flow all pfv {FLOW}\nrun 0\n"))
+
     def test_fix_modify_retriangulate(self):
         frozen = HEAD + "unfix integr\n" + FIX + THERMO
         self.liggghts(frozen + "run 10\nfix_modify flow retriangulate 1e-9\nrun 10\n")

@@ -36,6 +36,10 @@ class CoupleEvery(SettledTest):
         _, solves = self.run_with(AUTO, ratio=0.5, steps=50)
         self.assertEqual(solves, 50)
 
+    def test_where_each_step_is_solved_no_load_was_held_that_could_err(self):
+        fix = self.fix(0.5 * SettledTest.limit / STEP, AUTO)
+        self.assertRegex(self.liggghts(self.script(fix, "run 20\n")), r"solved at 20 of 20 steps\n")
+
     def test_a_compressible_fluid_is_solved_at_each_step(self):
         _, solves = self.run_with(AUTO + " bulk_modulus 1e7", steps=50)
         self.assertEqual(solves, 50)

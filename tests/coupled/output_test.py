@@ -214,8 +214,10 @@ class Output(CoupledTest):
     def test_sensors_read_the_pressure_where_they_are(self):
         """Each row holds what profile planes and neighbours bracket; outside the box the nearest
         place is read."""
-        self.liggghts(HEAD + f"fix flow all pfv {FLOW} sensors 5 s.csv 0.05 0.05 0.02 "
-                      "0.05 0.05 0.08 0.05 0.05 -1 0.05 0.05 9\nrun 10\n")
+        said = self.liggghts(HEAD + f"fix flow all pfv {FLOW} sensors 5 s.csv 0.05 0.05 0.02 "
+                             "0.05 0.05 0.08 0.05 0.05 -1 0.05 0.05 9\nrun 10\n")
+        self.assertEqual(re.findall(r"the sensor at \((.*?)\) m is outside the room of the fluid", said),
+                         ["0.05, 0.05, -1", "0.05, 0.05, 9"])
         header, rows = self.profile("s.csv")
         self.assertEqual(header, "time,0.05 0.05 0.02,0.05 0.05 0.08,0.05 0.05 -1,0.05 0.05 9")
         self.assertEqual([round(row[0] / 1e-5) for row in rows], [0, 5, 10])

@@ -31,6 +31,23 @@ class Refusals(CoupledTest):
         self.refuse(FLOW + " colour blue", "unknown keyword 'colour'", "conductance", "behind a face no_slip, symmetry, sealed, pressure P",
                     after="")
 
+    def test_a_keyword_that_is_nearly_right(self):
+        self.refuse("viscocity 0.01 " + faces(), "unknown keyword 'viscocity'; is viscosity meant?", after="")
+        self.refuse(FLOW, "knows no keyword 'presure'; is pressure meant?", after="fix_modify flow presure zlo 1\n")
+
+    def test_one_wall_for_both_sides(self):
+        wall = WALL.format("side", "xplane 0.1")
+        both = "wall side"
+        self.refuse("viscosity 0.01 " + faces(xlo=both, xhi=both), "along x its faces leave no room between them: xlo is at 0.1 m, "
+                    "xhi at 0.1 m; give each the wall on its side", before=wall)
+
+    def test_a_variable_that_is_not_there(self):
+        self.refuse("viscosity 0.01 " + faces(zlo="plane 0 pressure v_p"), "there is no variable 'p' for v_p",
+                    "`variable p equal")
+
+    def test_an_extent_without_its_axis(self):
+        self.refuse("viscosity 0.01 container face top extent pressure 0", "extent z hi", after="")
+
     def test_no_number(self):
         self.refuse("viscosity high " + faces(), "viscosity", "'high'", after="")
 
