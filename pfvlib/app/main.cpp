@@ -4,6 +4,7 @@
 #include "launch.hpp"
 #include "pfv/error.hpp"
 #include "pfv/version.hpp"
+#include "pfv/words.hpp"
 #include "selftest_command.hpp"
 #include "settings_command.hpp"
 #include "solve_arguments.hpp"
@@ -11,6 +12,7 @@
 #include "time_step_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <new>
@@ -124,17 +126,46 @@ int carry_out(const Commands& commands, const std::string& words) {
   return succeeded;
 }
 
+/// The first word, where it is no option and no command.
+void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(command->get_name());
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (!word.empty() && (word[0] == '-' || std::find(names.begin(), names.end(), word) != names.end())) return;
+  std::string known;
+  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  const std::string meant = pfv::meant_by(word, names);
+  throw pfv::InputError((word.empty() ? "a command is missing" : "there is no command '" + word + "'") +
+                        (meant.empty() ? ": give" : meant + " Give") + " one of " + known + "; see pfv --help");
+}
+
+/// Names the first option that the command does not have, where CLI11 says what is left of all words.
+std::string refusal_of(const CLI::App& command, const CLI::ParseError& error, int argc, char** argv) {
+  const std::string help = "see pfv " + (command.get_parent() ? command.get_name() + " " : "") + "--help";
+  std::vector<std::string> names;
+  for (const CLI::Option* one : command.get_options())
+    for (const std::string& name : one->get_lnames()) names.push_back("--" + name);
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    const std::string meant = pfv::meant_by(word, names);
+    if (word.rfind("--", 0) == 0 && std::find(names.begin(), names.end(), word) == names.end())
+      return "there is no option '" + word + "'" + (meant.empty() ? "; " : meant + " ") + help;
+  }
+  return error.what() + (": " + help);
+}
+
 int run(int argc, char** argv) {
   Commands commands;
   CLI::App& app = commands.app;
+  refuse_unknown_command(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // help or version
     return app.exit(request, std::cout, std::cerr);
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
-    const std::string command = chosen.empty() ? "pfv" : "pfv " + chosen.front()->get_name();
-    return complain(bad_input, error.what() + (": see " + command + " --help"));
+    const CLI::App& command = chosen.empty() ? app : *chosen.front();
+    return complain(bad_input, refusal_of(command, error, argc, argv));
   }
   std::string words;
   for (int i = 1; i < argc; ++i) words += argv[i] + std::string(1, '\0');

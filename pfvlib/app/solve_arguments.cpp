@@ -129,13 +129,11 @@ void add_flow_options(CLI::App& command, SolveArguments& arguments) {
 }
 
 double length_unit_of(const std::string& text) {
-  struct Unit {
-    const char* name;
-    double metres;
-  };
-  for (const Unit unit : {Unit{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}})
-    if (text == unit.name) return unit.metres;
-  return positive("--length-unit", text);
+  try {
+    return length_unit(text);
+  } catch (const InputError& error) {
+    throw InputError(std::string("--length-unit: ") + error.what());
+  }
 }
 
 namespace {
@@ -197,6 +195,10 @@ namespace {
 
 /// One output must neither replace another nor the packing.
 void check_outputs(const SolveRequest& request) {
+  const std::string ending = request.vtk ? std::filesystem::path(*request.vtk).extension().string() : "";
+  if (!ending.empty() && ending != ".vtu" && ending != ".pvtu")
+    throw InputError("--vtk " + *request.vtk + ": ParaView knows this form by the ending .vtu: give a file .vtu (pictures "
+                     "of it: python3 -m pfv.render)");
   std::vector<std::string> taken{request.packing};
   const auto walls = request.vtk ? walls_beside(*request.vtk) : std::nullopt;
   for (const auto& output : {request.forces, request.report, request.vtk, request.culprits, walls}) {

@@ -5,12 +5,14 @@
 
 #include "launch.hpp"
 #include "network/grains.hpp"
+#include "network/pore_boundaries.hpp"
 #include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
 #include "numbers.hpp"
 #include "pfv/darcy_grid.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/io.hpp"
+#include "text/number_text.hpp"
 
 #include <filesystem>
 #include <algorithm>
@@ -66,20 +68,21 @@ struct Facts {
   }
 };
 
-/// Nothing drives the flow and nothing fixes the level of the pressure.
-bool is_unloaded(const SolveRequest& request, const Facts& facts) {
-  if (request.settings.fluid.bulk_modulus || !facts.at_rest ||
-      !request.container.pressure_gradient.isZero(0.0))
-    return false;
-  const auto idle = [](const Boundary& boundary) {
-    return !boundary.imposes_pressure() && !boundary.drives_flux();
-  };
-  return std::all_of(request.container.faces.begin(), request.container.faces.end(),
-                     [&](const ContainerFace& face) { return idle(face.boundary); }) &&
-         std::all_of(request.container.patches.begin(), request.container.patches.end(),
-                     [&](const ContainerPatch& patch) { return idle(patch.boundary); }) &&
-         std::all_of(request.container.regions.begin(), request.container.regions.end(),
-                     [&](const Region& region) { return idle(region.boundary); });
+/// Where nothing drives a flow, what is missing.
+std::optional<std::string> why_nothing_flows(const SolveRequest& request, const Facts& facts) {
+  const Container& container = request.container;
+  if (request.settings.fluid.bulk_modulus || !facts.at_rest || !container.pressure_gradient.isZero(0.0)) return {};
+  std::optional<double> level;
+  for (int number = 0; number < boundary_count(container); ++number) {
+    const Boundary& boundary = boundary_of(container, number);
+    if (boundary.drives_flux() || boundary.profile) return {};
+    if (!boundary.imposes_pressure()) continue;
+    if (level && *level != boundary.value) return {};
+    level = boundary.value;
+  }
+  if (!level) return "no pressure anywhere, no flux and grains at rest: p is 0";
+  return "nothing drives a flow: p is " + detail::number_text(*level) +
+         " Pa everywhere; give the opposite face, or another, a pressure that differs, or a flux";
 }
 
 void warn_of_hidden(const Facts& facts, std::ostream& warnings) {
@@ -104,18 +107,24 @@ void warn_of_motion(const SolveRequest& request, const Facts& facts, const Repor
            << " m/s: no permeability is given; --at-rest leaves their velocities out\n";
 }
 
-void warn_of_size(const Facts& facts, std::ostream& warnings) {
+/// Spheres or walls in another unit than m.
+void warn_of_size(const Facts& facts, const Report& report, std::ostream& warnings) {
+  constexpr double hardly_any = 1e-6;  // a box that is a hundred times too large along each axis
+  constexpr std::int64_t packing = 10;
   if (facts.mean_diameter > largest_usual_diameter)
     warnings << "pfv: warning: the mean diameter is " << facts.mean_diameter
              << " m; lengths are in m: is --length-unit mm missing?\n";
+  if (report.spheres >= packing && 1.0 - report.porosity < hardly_any)
+    warnings << "pfv: warning: the spheres fill " << detail::percent_text(1.0 - report.porosity)
+             << " of the room: the walls are in m, whatever unit the packing is in; are they meant in another?\n";
 }
 
 void warn_of_pinned(const SolveRequest& request, const Facts& facts, const Report& report, std::ostream& warnings) {
   const Counts& counts = report.counts;
   // in a cell that is periodic all around no pressure has a level
   if (report.permeability_tensor && counts.pinned_pores == 0) return;
-  if (is_unloaded(request, facts))
-    warnings << "pfv: warning: no pressure anywhere, no flux and grains at rest: p is 0\n";
+  if (const auto why = why_nothing_flows(request, facts))
+    warnings << "pfv: warning: " << *why << '\n';
   else if (counts.pinned_pores > 0)
     warnings << "pfv: warning: " << counts.pinned_pores
              << " pores at rest have no way to the fluid: they take the mean pressure around them\n";
@@ -139,7 +148,7 @@ void warn(const SolveRequest& request, const FlowModel& flow, const Facts& facts
   const Counts& counts = report.counts;
   warn_of_hidden(facts, warnings);
   warn_of_motion(request, facts, report, warnings);
-  warn_of_size(facts, warnings);
+  warn_of_size(facts, report, warnings);
   warn_of_empty_space(flow, warnings);
   warn_of_pinned(request, facts, report, warnings);
   warn_of_inertia(request, report, warnings);
@@ -169,15 +178,16 @@ void write_outputs(const SolveRequest& request, const FlowModel& flow, const Dea
   by_one([&] { write_walls_beside(*request.vtk, flow.container(), report.faces); });
 }
 
+const Eigen::IOFormat one_blank(Eigen::StreamPrecision, Eigen::DontAlignCols);
+
 /// The tensor stands in the report; without a gradient its error is worth a line all the same.
 void write_permeability(const Report& report, std::ostream& out) {
   if (report.permeability) out << "permeability " << *report.permeability << " m2, ";
   else if (report.permeability_tensor)
-    out << "permeability along x, y, z " << report.permeability_tensor->diagonal().transpose() << " m2, ";
+    out << "permeability along x, y, z " << report.permeability_tensor->diagonal().transpose().format(one_blank) << " m2, ";
   if (report.permeability_error)
-    out << "estimated error of the permeability " << std::setprecision(2)
-        << 100.0 * *report.permeability_error << " %, degenerate throats' share of the dissipation "
-        << 100.0 * *report.degenerate_share << " %\n" << std::setprecision(6);
+    out << "estimated error of the permeability " << detail::percent_text(*report.permeability_error)
+        << ", degenerate throats' share of the dissipation " << detail::percent_text(*report.degenerate_share) << '\n';
 }
 
 void write_summary(const SolveRequest& request, const Report& report, std::ostream& out) {
@@ -193,7 +203,7 @@ void write_summary(const SolveRequest& request, const Report& report, std::ostre
     for (const FaceResult& face : report.faces) out << "flux " << face.name << ' ' << face.flux << " m3/s\n";
   for (const ObstacleResult& one : report.obstacles)
     out << "obstacle " << one.name << ": " << one.spheres << " spheres, volume " << one.volume << " m3, force "
-        << one.force.transpose() << " N, moment " << one.moment.transpose() << " N m\n";
+        << one.force.transpose().format(one_blank) << " N, moment " << one.moment.transpose().format(one_blank) << " N m\n";
 }
 
 bool names_pieces(const std::string& path) { return std::filesystem::path(path).extension() == ".pvtu"; }

@@ -108,6 +108,13 @@ Eigen::Vector3d vector_of(py::handle given, const char* name) {
   return {numbers.at(0), numbers.at(1), numbers.at(2)};
 }
 
+int axis_of(py::handle given) {
+  const std::string name = py::str(given);
+  for (int axis = 0; axis < 3; ++axis)
+    if (name == std::string(1, "xyz"[axis]) || name == std::to_string(axis)) return axis;
+  throw InputError("there is no axis '" + name + "': give x, y, z or 0, 1, 2");
+}
+
 py::array array_of(const Eigen::Vector3d& vector) { return py::array_t<double>(3, vector.data()); }
 
 py::array array_of(const std::vector<Eigen::Matrix3d>& matrices) {

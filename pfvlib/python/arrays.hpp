@@ -34,6 +34,8 @@ Numbers<std::int64_t> ids_of(py::handle given, py::ssize_t spheres);
 Eigen::VectorXi bodies_of(py::handle given, py::ssize_t spheres);
 /// One number.
 double number_of(py::handle given, const char* name);
+/// 0, 1, 2 or "x", "y", "z".
+int axis_of(py::handle given);
 /// Three numbers.
 Eigen::Vector3d vector_of(py::handle given, const char* name);
 

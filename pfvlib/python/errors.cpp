@@ -46,4 +46,9 @@ void translate_errors() {
   });
 }
 
+void warn(const char* warning, const std::string& text) {
+  const py::object type = py::module_::import("pfv._errors").attr(warning);
+  if (PyErr_WarnEx(type.ptr(), text.c_str(), 1) < 0) throw py::error_already_set();
+}
+
 }  // namespace pfv::python

@@ -16,14 +16,6 @@ namespace {
 
 using namespace py::literals;
 
-/// 0, 1, 2 or "x", "y", "z".
-int axis_of(py::handle given) {
-  const std::string name = py::str(given);
-  for (int axis = 0; axis < 3; ++axis)
-    if (name == std::string(1, "xyz"[axis]) || name == std::to_string(axis)) return axis;
-  throw InputError("there is no axis '" + name + "': give x, y, z or 0, 1, 2");
-}
-
 py::array sphere_strains_of(FlowHost& host, py::handle now, py::handle before, py::object edges, py::object tilt) {
   const auto places_now = rows_of_three(now, "now"), places_before = rows_of_three(before, "before");
   Displaced moved{columns_of(places_now), columns_of(places_before), {}, {}};

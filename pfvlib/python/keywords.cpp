@@ -78,11 +78,9 @@ std::vector<std::string> all_keywords() {
 
 void require_known(const std::string& function, const std::string& keyword, const std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), keyword) != names.end()) return;
-  const py::object like =
-      py::module_::import("difflib").attr("get_close_matches")(keyword, py::cast(names), 3);
-  const auto matches = like.cast<std::vector<std::string>>();
+  const std::string meant = meant_by(keyword, names);
   throw py::type_error(function + " has no keyword '" + keyword + "'" +
-                       (matches.empty() ? ": it has " : "; is " + joined(matches) + " meant? It has ") + joined(names));
+                       (meant.empty() ? ": it has " : meant + " It has ") + joined(names));
 }
 
 void read_keywords(const std::string& function, const py::kwargs& keywords, const std::vector<std::string>& names,

@@ -2,6 +2,7 @@
 // pfv.Packing: the spheres of a file, read and written.
 #include "arrays.hpp"
 #include "classes.hpp"
+#include "errors.hpp"
 #include "grains.hpp"
 
 #include "pfv/dense_packing.hpp"
@@ -55,9 +56,7 @@ PackingFile file_of_arrays(const GivenGrains& given, py::object bounds, py::obje
 }
 
 void warn_of(const std::vector<std::string>& remarks, const std::string& path) {
-  const py::object type = py::module_::import("pfv._errors").attr("PackingWarning");
-  for (const std::string& remark : remarks)
-    if (PyErr_WarnEx(type.ptr(), (path + ": " + remark).c_str(), 1) < 0) throw py::error_already_set();
+  for (const std::string& remark : remarks) warn("PackingWarning", path + ": " + remark);
 }
 
 void add_arrays(py::class_<PackingFile>& packing) {
@@ -123,9 +122,9 @@ void add_init(py::class_<PackingFile>& packing) {
 }
 
 void add_reader(py::module_& module) {
-  module.def("read_packing", [](py::object given, py::object snapshot, double length_unit) {
+  module.def("read_packing", [](py::object given, py::object snapshot, py::object unit) {
                const std::string path = path_of(given);
-               const PackingChoice choice{py::str(snapshot), length_unit};
+               const PackingChoice choice{py::str(snapshot), length_unit(py::str(unit))};
                PackingFile file = [&] {
                  const py::gil_scoped_release released;
                  return read_packing_file(path, choice);
@@ -136,7 +135,7 @@ void add_reader(py::module_& module) {
              R"(The spheres of a file in any format that `pfv solve` reads (doc/user_guide.md).
 
 snapshot: of a dump: "last", a time step, "time=T", or where there is no such step a number from 1
-length_unit: of the file, m
+length_unit: of the file: "mm", "cm", ..., or what it is in m
 
 Warns (PackingWarning) of what was assumed in reading. Raises InputError that names file, line and field.)");
 }

@@ -242,7 +242,7 @@ def dump(columns="id type x y z radius", rows=None, sides="ff ff ff", step=0, ed
     head=""):
     rows = rows or [(row[0], 1, *row[1:]) for row in ROWS]
     bounds = bounds or f"0 {edge}\n" * 3
-    return (f"{head}ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{count or len(rows)}\n"
+    return (f"{head}ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(rows) if count is None else count}\n"
             f"ITEM: BOX BOUNDS {sides}\n{bounds}"
             f"ITEM: ATOMS {columns} \n" + "".join(" ".join(map(str, row)) + " \n" for row in rows))
 
@@ -309,6 +309,8 @@ refused("the last cut off between lines", dump(step=10) + "".join(dump(step=20).
         "cut off after 51 of 100 atoms", "--snapshot")
 refused("cut off within the last number", dump()[:-8], "ends inside this line", "cut off")
 refused("cut off before its atoms", dump()[:60], "cut off")
+refused("a dump from before the grains were poured", dump(count=0).partition("ITEM: ATOMS")[0] + "ITEM: ATOMS id x y z radius\n",
+        "of step 0 has no atoms", "later step")
 refused("no such snapshot", dump(step=10) + dump(step=20), "no snapshot '15'", "10 20", options=("--snapshot", "15"))
 refused("a snapshot of a table", PLAIN, "is no dump", options=("--snapshot", "1"))
 refused("more atoms than it names", dump(count=50), "more lines than the 50 atoms")
@@ -335,7 +337,7 @@ GRANULAR = [(row[0], 1, row[4], 2500, *row[1:4]) for row in DIAMETERS]
 
 
 def data(rows, mark="", tail="", count=None):
-    return (f"LIGGGHTS data file\n\n{count or len(rows)} atoms\n1 atom types\n\n"
+    return (f"LIGGGHTS data file\n\n{len(rows) if count is None else count} atoms\n1 atom types\n\n"
             f"0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\n\nAtoms{mark}\n\n"
             + lines(rows, " ", header=None) + tail)
 

@@ -199,6 +199,24 @@ class Outputs(CommandTest):
                 self.assert_refused(result, "/dev/full", "No space left", status=1)
                 self.assertFalse(list(self.folder.glob(".*")))
 
+    def test_a_flow_that_nothing_drives_is_said(self):
+        for faces, said in (([], "no pressure anywhere, no flux and grains at rest: p is 0"),
+                            (["--face", "zlo:pressure=2"], "nothing drives a flow: p is 2 Pa everywhere; give the opposite"),
+                            (["--face", "zlo:pressure=2", "--patch", "zhi:0,0.5,0,0.5:pressure=2"], "nothing drives a flow"),
+                            (["--face", "zlo:pressure=2", "--face", "xhi:pressure=1"], ""),
+                            (["--face", "zlo:pressure=2", "--face", "xhi:flux=1"], "")):
+            with self.subTest(faces=faces):
+                result = self.solve(*faces)
+                lines = [line for line in result.stderr.splitlines() if "p is" in line]
+                self.assertEqual(len(lines), 1 if said else 0, result.stderr)
+                self.assertIn(said, result.stderr)
+
+    def test_walls_in_another_unit_than_the_spheres_are_asked_about(self):
+        asked = "the walls are in m, whatever unit the packing is in"
+        far = ["--box", *"0 1000 0 1000 0 1000".split()]
+        self.assertIn(asked, self.solve(*THROUGH_FLOW, box=far).stderr)
+        self.assertNotIn(asked, self.solve(*THROUGH_FLOW, box=["--box", *"-4 4 -4 4 -4 4".split()]).stderr)
+
     def test_hidden_spheres_are_named_counted_and_keep_their_row(self):
         header, rows = dense_rows()
         x, y, z = map(float, rows[0][1:4])

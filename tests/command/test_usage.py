@@ -47,6 +47,18 @@ class Usage(CommandTest):
             with self.subTest(arguments=arguments):
                 self.assert_refused(self.run_pfv(*arguments), "pfv: ", "--help")
 
+    def test_what_is_nearly_right_is_told_what_is_meant(self):
+        solve = ["solve", "--packing", DENSE, *UNIT_BOX]
+        for arguments, said in ((["permeability", "--packing", DENSE], "there is no command 'permeability': give one of solve, convert"),
+                                (["slove"], "there is no command 'slove'; is solve meant"),
+                                ([], "a command is missing: give one of solve"),
+                                ([*solve, "--faces", "zlo:pressure=1"], "there is no option '--faces'; is --face or --forces meant? see pfv solve --help"),
+                                ([*solve, "--viscocity=1"], "there is no option '--viscocity'; is --viscosity meant"),
+                                ([*solve, "--length-unit", "ell"], "--length-unit: the unit of length is 'ell': give m, cm"),
+                                ([*solve, "--vtk", "pores.png"], "--vtk pores.png: ")):
+            with self.subTest(arguments=arguments):
+                self.assert_refused(self.run_pfv(*arguments), said)
+
     def test_standard_output_that_cannot_be_written_is_a_failure(self):
         with open("/dev/full", "w") as full:
             result = self.run_pfv("--help", stdout=full)

@@ -120,6 +120,14 @@ class Errors(unittest.TestCase):
             pfv.read_packing(DATA / "packing_100.csv", snapshot=3)
         small = pfv.read_packing(DATA / "packing_100.csv", length_unit=1e-3)
         np.testing.assert_array_equal(small.radii, 1e-3 * pfv.read_packing(DATA / "packing_100.csv").radii)
+        np.testing.assert_array_equal(small.radii, pfv.read_packing(DATA / "packing_100.csv", length_unit="mm").radii)
+        with self.assertRaisesRegex(pfv.InputError, "unit of length is 'ell': give m, cm"):
+            pfv.read_packing(DATA / "packing_100.csv", length_unit="ell")
+
+    def test_a_place_without_pressure_is_named(self):
+        self.flow.evaluate(self.positions, self.radii)
+        with self.assertRaisesRegex(pfv.InputError, r"no pressure at \(2, 0.5, -1\)"):
+            self.flow.pressure_at([2, 0.5, -1])
 
     def test_queries_refuse_bad_places_and_axes(self):
         self.flow.evaluate(self.positions, self.radii)

@@ -35,6 +35,20 @@ class Permeability(CommandCase):
         self.assertEqual(pfv.permeability(bed.positions, bed.radii, UNIT, periodic="xyz", viscosity=VISCOSITY),
                          periodic)
 
+    def test_axes_have_names_and_numbers(self):
+        bed = grains()
+        for number, name in enumerate("xyz"):
+            self.assertEqual(pfv.permeability(bed.positions, bed.radii, UNIT, axis=number),
+                             pfv.permeability(bed.positions, bed.radii, UNIT, axis=name))
+        for wrong in ("w", 3, None):
+            with self.assertRaisesRegex(pfv.InputError, "there is no axis"):
+                pfv.permeability(bed.positions, bed.radii, UNIT, axis=wrong)
+
+    def test_lengths_in_mm_are_asked_about(self):
+        bed = grains()
+        with self.assertWarnsRegex(pfv.PackingWarning, "lengths are in m: are these in mm"):
+            pfv.permeability(1e3 * bed.positions, 1e3 * bed.radii, 1e3 * np.array(UNIT))
+
     def test_lists_are_taken_too(self):
         bed = grains()
         self.assertEqual(pfv.permeability(bed.positions.tolist(), bed.radii.tolist(), UNIT),

@@ -180,7 +180,7 @@ TEST_F(InputOutput, DumpRefusalsNameLineAndField) {
   expect_refusal(many, ":", "cut off");
   expect_refusal("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\nmany\n", ":4: ", "'many'");
   expect_refusal("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n0\nITEM: ATOMS id x y z radius\n",
-                 "", "no spheres");
+                 "", "of step 0 has no atoms");
 }
 
 pfv::PackingArrays two_spheres() {

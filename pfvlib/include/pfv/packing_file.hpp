@@ -41,6 +41,9 @@ struct PackingChoice {
   double length_unit = 1.0;  ///< m; lengths, velocities and bounds of the file are multiples of it
 };
 
+/// Metres of "mm", or of a number; throws InputError for what is no unit of length.
+double length_unit(const std::string& text);
+
 /// Reads spheres, also packed with gzip, from
 /// - a table with a header: separated by commas, semicolons, tabs or blanks, fields may be quoted, lines that begin with #
 ///   are comments; columns id, x, y, z, radius (or diameter), and vx, vy, vz, omegax, omegay, omegaz, under these or their

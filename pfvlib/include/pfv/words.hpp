@@ -21,6 +21,9 @@ extern const Demand finite, positive, not_negative, positive_or_infinite, part, 
     threads;
 }
 
+/// "; is viscosity meant?" where names are like `word`, the most like first; else nothing.
+std::string meant_by(const std::string& word, const std::vector<std::string>& names);
+
 /// The words of a command, read one after the other. Every method throws InputError; the message begins with
 /// the subject (a keyword, an option).
 class Words {

@@ -22,7 +22,8 @@ class Table:
         self.names = rows[0]
         for number, row in enumerate(rows, 1):
             if len(row) != len(self.names):
-                raise InputError(f"{path}:{number}: has {len(row)} fields and not {len(self.names)}: write it anew")
+                raise InputError(f"{path}:{number}: has {len(row)} fields and its first line {len(self.names)}: give a table of "
+                                 "fix pfv or pfv solve, written to its end")
         try:
             values = np.array([[float(word) if word else np.nan for word in row] for row in rows[1:]])
         except ValueError as problem:

@@ -104,7 +104,8 @@ double DarcyGrid::pressure_at(const Eigen::Vector3d& place) const {
   const Eigen::Vector3d relative = place - data_->built->lower;
   for (int axis = 0; axis < 3; ++axis)
     if (!(relative[axis] >= 0.0 && relative[axis] <= grid.counts[axis] * grid.lengths[axis]))
-      throw InputError("no pressure at a place outside the box");
+      throw InputError("no pressure at (" + detail::number_text(place[0]) + ", " + detail::number_text(place[1]) + ", " +
+                       detail::number_text(place[2]) + "): the place is outside the box; give one within");
   const int cell = grid.cell_at(relative);
   return data_->last.pressures[cell] +
          data_->last.fields.gradient.col(cell).dot(relative - grid.centre(cell));

@@ -195,6 +195,9 @@ PackingFile read_snapshot(const std::string& path, std::string_view text, const 
     constexpr std::string_view heading = "ITEM: ATOMS";
     if (!starts_with(lines.line(), heading)) continue;
     if (atoms < 0) lines.fail("no ITEM: NUMBER OF ATOMS before this line: write the dump anew");
+    if (atoms == 0)
+      throw InputError(path + ": the snapshot of step " + std::to_string(snapshot.step.value_or(0)) +
+                       " has no atoms (yet): give a dump of a later step, or choose another of its snapshots with --snapshot");
     Words names;
     split_words(lines.line().substr(heading.size()), names);
     const Columns columns = find_columns(lines, names, Naming::dump);

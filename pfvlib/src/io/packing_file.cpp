@@ -39,6 +39,19 @@ std::string whole_file(const std::string& path) {
   return text;
 }
 
+std::optional<double> named_length_unit(std::string_view unit) {
+  struct Unit {
+    std::string_view name;
+    double metres;
+  };
+  constexpr Unit units[]{{"m", 1.0},  {"km", 1e3},    {"cm", 1e-2},      {"mm", 1e-3},
+                         {"um", 1e-6}, {"nm", 1e-9},   {"in", 0.0254},    {"inch", 0.0254},
+                         {"ft", 0.3048}, {"\xC2\xB5m", 1e-6}, {"\xCE\xBCm", 1e-6}};  // both signs of micro
+  for (const Unit& one : units)
+    if (unit == one.name) return one.metres;
+  return {};
+}
+
 namespace {
 
 /// What a file is that holds no spheres in a form that is read, with what to do; empty: it may be one.
@@ -119,6 +132,15 @@ void apply_unit(PackingFile& file, double unit) {
 
 }  // namespace
 }  // namespace detail
+
+double length_unit(const std::string& text) {
+  const auto named = detail::named_length_unit(text);
+  const auto metres = named ? named : detail::finite_number(detail::trimmed(text));
+  if (!metres || !(*metres > 0.0))
+    throw InputError("the unit of length is " + detail::quoted(text) +
+                     ": give m, cm, mm, um, nm, km, in, ft, or what one is in m, a number > 0");
+  return *metres;
+}
 
 PackingFile read_packing_file(const std::string& path, const PackingChoice& choice) {
   std::string content = detail::whole_file(path);

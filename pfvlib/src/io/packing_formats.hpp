@@ -17,6 +17,9 @@ inline bool starts_with(std::string_view text, std::string_view start) {
 }
 
 // Each takes the file's text, and throws InputError naming line and field.
+/// What a unit of length is in m; nothing for one that is not known, as that of a density.
+std::optional<double> named_length_unit(std::string_view unit);
+
 PackingFile read_table(const std::string& path, std::string_view text, double length_unit);
 PackingFile read_dump(const std::string& path, std::string_view text, const PackingChoice& choice);
 PackingFile read_data_file(const std::string& path, std::string_view text);

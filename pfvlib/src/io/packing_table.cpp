@@ -78,26 +78,12 @@ Words names_in_comment(std::string_view comment) {
   return header ? names : Words();
 }
 
-/// What a unit of length is in m; nothing for one that is not known, as that of a density.
-std::optional<double> metres_of(std::string_view unit) {
-  struct Unit {
-    std::string_view name;
-    double metres;
-  };
-  constexpr Unit units[]{{"m", 1.0},  {"km", 1e3},    {"cm", 1e-2},      {"mm", 1e-3},
-                         {"um", 1e-6}, {"nm", 1e-9},   {"in", 0.0254},    {"inch", 0.0254},
-                         {"ft", 0.3048}, {"\xC2\xB5m", 1e-6}, {"\xCE\xBCm", 1e-6}};  // both signs of micro
-  for (const Unit& one : units)
-    if (unit == one.name) return one.metres;
-  return {};
-}
-
 /// Units of lengths and velocities in names, which `--length-unit` has to agree with.
 void refuse_units(const TextLines& lines, const Words& names, double length_unit) {
   for (const std::string_view name : names) {
     const std::string_view unit = unit_in(name);
     const std::string_view length = unit.substr(0, unit.find('/'));
-    const auto metres = metres_of(length);
+    const auto metres = named_length_unit(length);
     if (!metres || std::abs(*metres - length_unit) <= 1e-9 * length_unit) continue;
     if (length_unit == 1.0)
       lines.fail("column " + detail::quoted(name) + " is not in m: give the file's unit with --length-unit");

@@ -2,6 +2,8 @@
 // The report as people read it at the end of a run.
 #include "pfv/io.hpp"
 
+#include "text/number_text.hpp"
+
 #include <cstdio>
 
 namespace pfv {
@@ -40,8 +42,8 @@ std::string phases(const Report& done) {
 std::string permeability(const Report& done) {
   if (!done.permeability || (!done.degenerate_share && done.outside_range.empty())) return {};
   std::string text = line("permeability %.6g m2", *done.permeability);
-  if (done.permeability_error) text += line("  estimated error %.2g %%", 100.0 * *done.permeability_error);
-  if (done.degenerate_share) text += line("  in degenerate throats %.2g %%", 100.0 * *done.degenerate_share);
+  if (done.permeability_error) text += "  estimated error " + detail::percent_text(*done.permeability_error);
+  if (done.degenerate_share) text += "  in degenerate throats " + detail::percent_text(*done.degenerate_share);
   text += '\n';
   for (const std::string& reason : done.outside_range)
     text += "WARNING: the permeability's estimated error may not hold: " + reason + "\n";

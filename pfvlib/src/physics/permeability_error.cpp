@@ -2,6 +2,7 @@
 #include "physics/permeability_error.hpp"
 
 #include "physics/open_throat.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -79,10 +80,7 @@ void add_shape(Means& sums, double weight, double conductance, double area) {
 }
 
 std::string percent(const char* what, double share, double checked) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%s %.2g %% (compared up to %.2g %%)", what, 100.0 * share,
-                100.0 * checked);
-  return text;
+  return std::string(what) + ' ' + detail::percent_text(share) + " (compared up to " + detail::percent_text(checked) + ")";
 }
 
 std::vector<std::string> outside_range(const Means& means, double solid_fraction) {

@@ -176,7 +176,7 @@ Setting model() {
 
 Setting retriangulate() {
   Setting setting = number(row("Steps", "retriangulate",
-                               "accumulated pore strain at which the network is built anew: the mean of all pores', or "
+                               "accumulated pore strain (0.01 is 1 %) at which the network is built anew: the mean of all pores', or "
                                "the largest (without a word, too)",
                                {false, true, true}, pores),
                            "retriangulation strain", "[mean|largest] STRAIN", "", demands::positive_or_infinite,

@@ -180,7 +180,9 @@ double pressure_at(const BuiltNetwork& built, const Solution& solution,
   for (const WallSurface& wall : spheres.walls)  // a plane normal to an axis is a bound of the edges
     within = within && (wall.axis >= 0 || wall.surface.distance(relative) >= round_off);
   if (!within)
-    throw InputError("no pressure at a place outside the container (or in one without grains)");
+    throw InputError("no pressure at (" + detail::number_text(place[0]) + ", " + detail::number_text(place[1]) + ", " +
+                     detail::number_text(place[2]) + "): the place is outside the container, or that has no grains; give "
+                     "one within");
   return built.share.ranks ? shared_pressure_at(built, solution, relative)
                            : solution.pressures[built.network.cell_pore[locate(built.network, spheres, relative, 0)]];
 }
@@ -219,8 +221,8 @@ std::optional<std::string> warning_of(const EmptySpace& empty) {
   if (!(empty.part > noticed)) return {};
   std::ostringstream text;
   text.precision(2);
-  text << 100.0 * empty.part << " % of the pore volume is in pores larger than two grains; the largest, of "
-       << empty.largest << " grains, is at (" << empty.place.transpose()
+  text << detail::percent_text(empty.part) << " of the pore volume is in pores larger than two grains; the largest, of "
+       << empty.largest << " grains, is at (" << empty.place[0] << ", " << empty.place[1] << ", " << empty.place[2]
        << ") m: water there flows without the resistance of grains; where it should not be, draw faces and walls "
           "closer to the grains";
   return text.str();

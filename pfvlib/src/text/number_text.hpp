@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,6 +43,14 @@ inline void append_number(std::string& text, double number) {
 inline std::string number_text(double number) {
   std::string text;
   append_number(text, number);
+  return text;
+}
+
+/// A part of 1 in per cent, for messages: two digits, and those before the point as they are (100, not 1e+02).
+inline std::string percent_text(double part) {
+  const double percent = 100.0 * part;
+  char text[32];
+  std::snprintf(text, sizeof text, percent >= 99.5 && percent < 1e9 ? "%.0f %%" : "%.2g %%", percent);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include "text/number_text.hpp"
 #include "text/text_lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,6 +21,40 @@ const Demand count{"a whole number >= 1", [](double x) { return x >= 1; }};
 const Demand flow_steps{"a whole number of flow steps >= 0", [](double x) { return x >= 0; }};
 const Demand threads{"1 to 64", [](double x) { return x >= 1 && x <= 64; }};
 }  // namespace demands
+
+namespace {
+
+/// How many letters must be put in, taken out, changed or exchanged with the next to make one of the other (Damerau).
+std::size_t letters_apart(const std::string& one, const std::string& other) {
+  std::vector<std::vector<std::size_t>> apart(one.size() + 1, std::vector<std::size_t>(other.size() + 1));
+  for (std::size_t i = 0; i <= one.size(); ++i)
+    for (std::size_t j = 0; j <= other.size(); ++j) {
+      if (i == 0 || j == 0) {
+        apart[i][j] = i + j;
+        continue;
+      }
+      const std::size_t changed = apart[i - 1][j - 1] + (one[i - 1] != other[j - 1]);
+      apart[i][j] = std::min({changed, apart[i - 1][j] + 1, apart[i][j - 1] + 1});
+      if (i > 1 && j > 1 && one[i - 1] == other[j - 2] && one[i - 2] == other[j - 1])
+        apart[i][j] = std::min(apart[i][j], apart[i - 2][j - 2] + 1);
+    }
+  return apart.back().back();
+}
+
+}  // namespace
+
+std::string meant_by(const std::string& word, const std::vector<std::string>& names) {
+  constexpr std::size_t shown = 3;
+  std::vector<std::pair<std::size_t, std::string>> like;
+  for (const std::string& name : names)
+    if (const std::size_t apart = letters_apart(word, name); 3 * apart <= std::max(word.size(), name.size()))
+      like.emplace_back(apart, name);
+  std::stable_sort(like.begin(), like.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  like.resize(std::min(like.size(), shown));
+  std::string text;
+  for (const auto& [apart, name] : like) text += (text.empty() ? "; is " : " or ") + name;
+  return text.empty() ? text : text + " meant?";
+}
 
 std::string Words::keyword() {
   const std::string word = words_[next_++];
