@@ -23,7 +23,7 @@ TEST(Text, NamesLikeAWord) {
   EXPECT_EQ(pfv::meant_by("densty", names), "; is density meant?");
   EXPECT_EQ(pfv::meant_by("faces", names), "; is face meant?");
   EXPECT_EQ(pfv::meant_by("slover", names), "; is solver meant?");
-  EXPECT_EQ(pfv::meant_by("path", names), "; is patch or face meant?");
+  EXPECT_EQ(pfv::meant_by("--faces", {"--forces", "--solver", "--face"}), "; is --face or --forces meant?");
   EXPECT_EQ(pfv::meant_by("colour", names), "");
   EXPECT_EQ(pfv::meant_by("", names), "");
 }
