@@ -10,6 +10,7 @@ import functools
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -26,9 +27,11 @@ FILE = re.compile(r'`((?:doc|inputs|liggghts_fix|pfvlib|tests)/[\w./-]*)`')
 @functools.cache
 def tracked():
     """Files and folders of the repository, as paths; what a run has left in it is not among them."""
-    done = subprocess.run(['git', '-C', ROOT, 'ls-files', '-co', '--exclude-standard'], capture_output=True, text=True)
-    files = [ROOT / name for name in done.stdout.split('\n') if name]
-    if not files:  # not a repository: an unpacked archive
+    files = []
+    if shutil.which('git'):
+        done = subprocess.run(['git', '-C', ROOT, 'ls-files', '-co', '--exclude-standard'], capture_output=True, text=True)
+        files = [ROOT / name for name in done.stdout.split('\n') if name]
+    if not files:  # not a repository, an unpacked archive, or a machine without git
         files = [path for path in ROOT.rglob('*')
                  if not any(part.startswith(('build', '.')) for part in path.relative_to(ROOT).parts[:-1])]
     return {path for path in files if path.exists()} | {folder for path in files for folder in path.parents}

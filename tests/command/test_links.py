@@ -2,6 +2,7 @@
 """Links of the pages: each file, figure and heading that a page of the project points at is there, each file that it
 names by its path, and each figure of doc/figures is shown by one. `doc/markdown_links.py --external` lists others."""
 import pathlib
+import subprocess
 import sys
 import unittest
 
@@ -24,6 +25,10 @@ class Links(unittest.TestCase):
         figures = list((ROOT / 'doc/figures').glob('*.png'))
         self.assertTrue(figures)
         self.assertEqual([path.name for path in figures if path.resolve() not in shown], [])
+
+    def test_a_machine_without_git_can_look_too(self):
+        done = subprocess.run([sys.executable, ROOT / 'doc/markdown_links.py'], env={'PATH': ''}, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_wrong_links_are_found(self):
         page = ROOT / 'README.md'
