@@ -32,11 +32,13 @@ def viscosity_for(grains):
     return VISCOSITY * (mean_radius(grains) / 0.03) ** 2
 
 
-def prepare(folder, kind, grains, seed, out, made=0.0):
+def prepare(folder, kind, grains, seed, out, made=0.0, local=0.0, given=""):
     """Restart file, dump and measures of a bed; makes it where OUT has none of this kind. `made`: with this friction
-    (degrees) its grains sink and come to rest, instead of those of its kind; who reads the restart file gives another."""
+    (degrees) its grains sink and come to rest, instead of those of its kind; who reads the restart file gives another.
+    `local`: local damping of its grains until then, 0 to 1. `given`: the dump of a bed that was made elsewhere, whose grains
+    come to rest where they are."""
     store = folder / f"{out}_bed.json"
-    wanted = {"kind": kind, "N": grains, "SEED": seed, "MADE": made}
+    wanted = {"kind": kind, "N": grains, "SEED": seed, "MADE": made, "LOCAL": local, "GIVEN": given}
     if store.exists() and json.loads(store.read_text())["of"] == wanted:
         return json.loads(store.read_text())
     radius = mean_radius(grains)
@@ -50,8 +52,11 @@ def prepare(folder, kind, grains, seed, out, made=0.0):
                  "mu_fall": math.tan(math.radians(made)) if made else KINDS[kind]["mu_fall"],
                  "mu_rest": math.tan(math.radians(made)) if made else FRICTION, "g": BUOYANT,
                  "drag": mass * BUOYANT / speed, "fall": fall,
-                 "settle": round(1.5 / (2.5 * contact_step)), "out": out, "name": folder.name,
+                 "settle": round(1.5 / (2.5 * contact_step)), "local": local, "stand": int(bool(given)), "given": f"{out}.data",
+                 "hold": round(1.0 / (2.5 * contact_step)), "out": out, "name": folder.name,
                  **{f"s{k + 1}": prime for k, prime in enumerate(scene.primes(seed))}}
+    if given:
+        write_data(folder / variables["given"], read_dump(given), radius, top)
     print(f"{kind} bed of {grains} grains, mean diameter {2 * radius:.4f} m", flush=True)
     said, cpu = scene.liggghts(folder, "../common/in.bed", variables, out + "_bed",
                                scene.Progress("bed", 0, fall, 2.5 * contact_step))
@@ -64,6 +69,24 @@ def prepare(folder, kind, grains, seed, out, made=0.0):
 def read_dump(path):
     """Columns id, type, x, y, z, radius of a dump with one snapshot."""
     return np.loadtxt(path, skiprows=9)
+
+
+def write_dump(path, grains):
+    """As read_dump reads them."""
+    bounds = [(0, LENGTH), (0, WIDTH), (0, (grains[:, 4] + grains[:, 5]).max())]
+    header = ["ITEM: TIMESTEP", "0", "ITEM: NUMBER OF ATOMS", f"{len(grains)}", "ITEM: BOX BOUNDS ff ff ff",
+              *(f"{low!r} {float(high)!r}" for low, high in bounds), "ITEM: ATOMS id type x y z radius"]
+    np.savetxt(path, grains, fmt="%d %d %.17g %.17g %.17g %.17g", header="\n".join(header), comments="")
+
+
+def write_data(path, grains, radius, top):
+    """The grains of a dump as a data file of LIGGGHTS for in.bed: types by their sizes."""
+    types = 1 + abs(grains[:, 5, None] / radius - [0.9, 1.0, 1.1]).argmin(axis=1)
+    edges = [(-2 * radius, end + 2 * radius) for end in (LENGTH, WIDTH, top)]
+    lines = ["a bed that was made elsewhere", "", f"{len(grains)} atoms", "4 atom types", "",
+             *(f"{low!r} {float(high)!r} {axis}lo {axis}hi" for axis, (low, high) in zip("xyz", edges)), "", "Atoms", ""]
+    lines += [f"{int(g[0])} {kind} {2 * g[5]!r} {DENSITY!r} {g[2]!r} {g[3]!r} {g[4]!r}" for g, kind in zip(grains.tolist(), types)]
+    path.write_text("\n".join(lines) + "\n")
 
 
 def porosity(z, radius, low, high, area=LENGTH * WIDTH):

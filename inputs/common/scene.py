@@ -44,14 +44,14 @@ def parse(words, keys):
     return settings
 
 
-def numbers(settings, key, kind=float):
-    """The comma-separated numbers of a setting, above 0, sorted."""
+def numbers(settings, key, kind=float, zero=False):
+    """The comma-separated numbers of a setting, above 0 (or 0, where that is meant), sorted."""
     try:
         values = sorted(kind(word) for word in settings[key].split(","))
     except ValueError:
         raise BadSetting(f"{key} is a number, or several with commas between them") from None
-    if values[0] <= 0:
-        raise BadSetting(f"{key} must be above 0")
+    if values[0] < 0 or (values[0] == 0 and not zero):
+        raise BadSetting(f"{key} must be above 0" if not zero else f"{key} must be 0 or above")
     return values
 
 

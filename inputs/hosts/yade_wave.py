@@ -5,7 +5,7 @@
 
 Spheres sink slowly under their weight in the fluid and come to rest with the friction MADE (degrees) and YADE's local damping
 DAMPING (with BED they stand where the dump of a bed of N grains has them); then they have 30 degrees and no damping, and the pressure on the surface grows as in wave_unstable. Writes
-NAME_bed.json, NAME_wave_state.csv and NAME_wave_sensors.csv, and with _still in place of _wave the same without the wave,
+NAME_bed.json, NAME.dump (the bed at rest), NAME_wave_state.csv and NAME_wave_sensors.csv, and with _still in place of _wave the same without the wave,
 as the runs of LIGGGHTS do.
 """
 import json
@@ -138,6 +138,7 @@ make_bed()
 measures = bed.measure(grains())
 with open(SETTINGS["OUT"] + "_bed.json", "w") as file:
     json.dump(measures, file, indent=1)
+bed.write_dump(SETTINGS["OUT"] + ".dump", grains())
 O.saveTmp("bed")
 run_wave(measures, SETTINGS["RATE"], SETTINGS["OUT"] + "_wave")
 O.loadTmp("bed")

@@ -22,9 +22,10 @@ KEYS = {
     "N": (int, 300, "grains"),
     "MADE": (str, "35,40,60", "frictions with which beds are made and come to rest, degrees; they have 30 in the wave"),
     "SEEDS": (str, "1,2", "samples of each"),
+    "LOCAL": (str, "0,0.2", "local dampings of the grains while a bed is made, as YADE has them"),
     "RATE": (float, 200.0, "growth of the amplitude, Pa/s"),
     "AMPLITUDE": (float, 200.0, "amplitude at the end, Pa"),
-    "YADE": (str, "no", "beds in YADE as well, made with these local dampings (0,0.2), where it is installed"),
+    "YADE": (str, "no", "yes: in YADE as well, where it is installed, and its beds here"),
     "TOP": scene.TOP,
     "LAW": scene.LAW,
     "VISCOSITY": bed.VISCOSITY_KEY,
@@ -51,54 +52,58 @@ def wave_on(settings, measures, rate, out):
                     words="retriangulate mean 0.002")
 
 
-def described(settings, made, seed, program, measures, runs):
+def described(settings, made, seed, local, program, measures, runs):
     end = settings["AMPLITUDE"] / settings["RATE"] - AVERAGED
     found = {name: [means_at(run, part * end) for part in PARTS] for name, run in runs.items()}
-    return {"made": made, "seed": seed, "program": program, "porosity": measures["core_porosity"],
+    return {"made": made, "seed": seed, "local": local, "program": program, "porosity": measures["core_porosity"],
             "mean_porosity": measures["porosity"], **found}
 
 
-def bed_made_at(settings, made, seed):
-    """One bed: with the wave and without, at four instants."""
-    settings = {**settings, "OUT": f"{settings['OUT']}_{made:g}_{seed}"}
-    measures = bed.prepare(SCENE, "loose", settings["N"], seed, settings["OUT"], made)
+def bed_made_at(settings, made, seed, local, given=""):
+    """One bed: with the wave and without, at four instants. `given`: the dump of one made elsewhere."""
+    settings = {**settings, "OUT": f"{settings['OUT']}_{'of_yade_' * bool(given)}{made:g}_{local:g}_{seed}"}
+    measures = bed.prepare(SCENE, "loose", settings["N"], seed, settings["OUT"], made, local, given)
     runs = {"wave": wave_on(settings, measures, settings["RATE"], settings["OUT"] + "_wave"),
             "still": wave_on(settings, measures, 0.0, settings["OUT"] + "_still")}
     balances = {word: max(float(abs(run.state[word]).max()) for run in runs.values()) for word in ("mass", "balance")}
-    return {**described(settings, made, seed, "pfv", measures, runs), **balances,
+    return {**described(settings, made, seed, local, "pfv, YADE's bed" if given else "pfv", measures, runs), **balances,
             "cpu": measures["cpu"] + sum(run.figures["cpu"] for run in runs.values())}
 
 
-def bed_in_yade(settings, made, seed, damping):
+def name_in_yade(settings, made, seed, local):
+    return f"{settings['OUT']}_yade_{made:g}_{local:g}_{seed}"
+
+
+def bed_in_yade(settings, made, seed, local):
     """The same by YADE alone: its grains, contacts and FlowEngine (inputs/hosts/yade_wave.py)."""
-    out = f"{settings['OUT']}_yade_{made:g}_{damping:g}_{seed}"
-    words = {"N": settings["N"], "MADE": made, "DAMPING": damping, "SEED": seed, "RATE": settings["RATE"],
+    out = name_in_yade(settings, made, seed, local)
+    words = {"N": settings["N"], "MADE": made, "DAMPING": local, "SEED": seed, "RATE": settings["RATE"],
              "AMPLITUDE": settings["AMPLITUDE"], "OUT": SCENE / out}
     begin = time.time()
     ran = subprocess.run(["yade", "-n", "-x", "-j1", str(SCENE.parent / "hosts" / "yade_wave.py"),
                           *(f"{key}={value}" for key, value in words.items())], capture_output=True, text=True)
     if ran.returncode != 0:
         raise scene.Failure(f"YADE failed on the bed made at {made:g} degrees: {ran.stderr.strip()[-300:]}")
-    print(f"YADE, made at {made:g} degrees with a local damping of {damping:g}: {time.time() - begin:.0f} s", flush=True)
+    print(f"YADE, made at {made:g} degrees with a local damping of {local:g}: {time.time() - begin:.0f} s", flush=True)
     measures = json.loads((SCENE / f"{out}_bed.json").read_text())
     runs = {name: wave.Run(SCENE, f"{out}_{name}", measures, {}) for name in ("wave", "still")}
-    return described(settings, made, seed, f"YADE, local damping {damping:g}", measures, runs)
+    return described(settings, made, seed, local, "YADE", measures, runs)
 
 
-def dampings_of(settings):
-    """The local dampings of the beds in YADE; none where it is not installed, which is said."""
-    if settings["YADE"] == "no":
-        return []
-    try:
-        dampings = [float(word) for word in settings["YADE"].split(",")]
-    except ValueError:
-        dampings = [-1.0]
-    if not all(0 <= damping < 1 for damping in dampings):
-        raise scene.BadSetting("YADE is no, or local dampings from 0 to 1 with commas between them")
-    if not shutil.which("yade"):
+def bed_of_yade(settings, made, seed, local):
+    """The bed that YADE has made and run, here: only the fluid and the dashpots of contacts are others."""
+    return bed_made_at(settings, made, seed, local, str(SCENE / f"{name_in_yade(settings, made, seed, local)}.dump"))
+
+
+def makers(settings):
+    """Who runs the beds; not YADE where it is not installed, which is said."""
+    if settings["YADE"] not in ("yes", "no"):
+        raise scene.BadSetting("YADE must be yes or no")
+    if settings["YADE"] == "yes" and not shutil.which("yade"):
         print("YADE is not installed (Debian's package yade): its rows are left out")
-        return []
-    return dampings
+    elif settings["YADE"] == "yes":
+        return [bed_made_at, bed_in_yade, bed_of_yade]
+    return [bed_made_at]
 
 
 def spread(values, form="{:.0f}"):
@@ -108,16 +113,16 @@ def spread(values, form="{:.0f}"):
 
 def tabulate(settings, found):
     times = [settings["AMPLITUDE"] / settings["RATE"] * part for part in PARTS]
-    table = Table("made at", "by", "porosity: away from walls; mean",
+    table = Table("made at", "local damping", "by", "porosity: away from walls; mean",
                   f"mean excess after {', '.join(f'{t:g}' for t in times)} s with the wave, Pa", "without it, Pa",
                   "∇H/i_c in depth at the end, with; without", "settled, with; without, mm")
-    for made, program in dict.fromkeys((one["made"], one["program"]) for one in found):
-        beds = [one for one in found if (one["made"], one["program"]) == (made, program)]
+    for kind in dict.fromkeys((one["made"], one["local"], one["program"]) for one in found):
+        beds = [one for one in found if (one["made"], one["local"], one["program"]) == kind]
 
         def over(run, name, k, form="{:.0f}"):
             return spread([one[run][k][name] for one in beds], form)
 
-        table.row(f"{made:g}°", program,
+        table.row(f"{kind[0]:g}°", f"{kind[1]:g}", kind[2],
                   "; ".join(spread([one[name] for one in beds], "{:.3f}") for name in ("porosity", "mean_porosity")),
                   *("; ".join(over(run, "excess", k) for k in range(len(PARTS))) for run in ("wave", "still")),
                   *("; ".join(over(run, name, -1, "{:.2f}") for run in ("wave", "still")) for name in ("in_depth", "settled")))
@@ -125,17 +130,18 @@ def tabulate(settings, found):
 
 
 def checks(found):
-    own = [one for one in found if one["program"] == "pfv"]
-    rows = [("the fluid's own force balance, largest", max(one["balance"] for one in own), 1e-10),
-            ("the fluid's mass balance, largest", max(one["mass"] for one in own), 1e-9)]
+    coupled = [one for one in found if one["program"] != "YADE"]
+    own = [one for one in coupled if one["program"] == "pfv"]
+    rows = [("the fluid's own force balance, largest", max(one["balance"] for one in coupled), 1e-10),
+            ("the fluid's mass balance, largest", max(one["mass"] for one in coupled), 1e-9)]
     rows = [(name, value, f"<= {most:g}", value <= most) for name, value, most in rows]
-    for seed in sorted({one["seed"] for one in own}):
+    for seed, local in sorted({(one["seed"], one["local"]) for one in own}):
         # a bed gives its weight to the fluid the more the less its friction holds it, wave or none
-        beds = sorted((one for one in own if one["seed"] == seed), key=lambda one: one["made"])
+        beds = sorted((one for one in own if (one["seed"], one["local"]) == (seed, local)), key=lambda one: one["made"])
         for low, high in zip(beds, beds[1:]):
             if high["made"] >= 1.4 * low["made"]:
                 more = high["still"][-1]["excess"] - low["still"][-1]["excess"]
-                rows.append((f"sample {seed}: excess without wave, made at {high['made']:g}° less {low['made']:g}°, Pa",
+                rows.append((f"sample {seed}, local damping {local:g}: excess without wave, made at {high['made']:g}° less {low['made']:g}°, Pa",
                              more, "> 0", more > 0))
     return rows
 
@@ -144,15 +150,15 @@ def work(words):
     write = "write" in words
     settings = scene.parse([word for word in words if word != "write"], KEYS)
     made, seeds = scene.numbers(settings, "MADE"), scene.numbers(settings, "SEEDS", int)
+    dampings = scene.numbers(settings, "LOCAL", zero=True)
     if settings["N"] < 100 or min(settings["RATE"], settings["AMPLITUDE"], *seeds) <= 0 or not 0 < min(made) <= max(made) < 85:
         raise scene.BadSetting("N must be at least 100, RATE, AMPLITUDE and SEEDS above 0, MADE between 0 and 85")
+    if max(dampings) >= 1:
+        raise scene.BadSetting("LOCAL must be below 1")
     if settings["AMPLITUDE"] / settings["RATE"] < 8 * AVERAGED:
         raise scene.BadSetting(f"AMPLITUDE / RATE must be at least {8 * AVERAGED:g} s")
-    dampings = dampings_of(settings)
-    found = []
-    for friction in made:
-        found += [bed_made_at(settings, friction, seed) for seed in seeds]
-        found += [bed_in_yade(settings, friction, seed, damping) for damping in dampings for seed in seeds]
+    found = [maker(settings, friction, seed, local) for friction in made for local in dampings for maker in makers(settings)
+             for seed in seeds]
     lines = tabulate(settings, found)
     print(f"CPU of the runs with pfv: {sum(one.get('cpu', 0.0) for one in found):.0f} s")
     if write:
