@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Error against run time: measures, and writes doc/error_vs_time.md and its figures.
 
-    doc/error_vs_time.py [PART...]     about half a CPU hour for all parts
+    doc/error_vs_time.py [PART...]     about an hour for `all` parts
+    doc/error_vs_time.py check         whether the sources are those that the page's figures follow from
+    doc/error_vs_time.py again         three cheap figures once more, against the page's
 
-Parts: solvers thresholds coupling coupling_5000 sizes models scaling. The figures of a part that is
+Parts: scenes solvers thresholds coupling coupling_5000 sizes models scaling. The figures of a part that is
 not named are those of doc/error_vs_time.json, where each keeps what it measured. Times are CPU
-seconds on one thread of this machine: compare them within a table.
+seconds on one thread of this machine: compare them within a table. The scenes' rows are kept one by one
+(scene_errors.py), so that a command that was interrupted goes on.
 """
 import csv
 import json
@@ -17,15 +20,14 @@ import subprocess
 import sys
 import tempfile
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.append(str(ROOT / "inputs/common"))
 import plotting
+import scene_errors
+import scene_page
+from plotting import plt
 
 BIN = pathlib.Path(os.environ.get("PFV_BIN", ROOT / "build/bin"))
 KEPT = ROOT / "build" / "error_vs_time"  # runs
@@ -218,30 +220,31 @@ def write_thresholds(rows):
     return "\n".join(lines)
 
 
+EACH_STEP = "FIX=couple_every 1"
 COUPLINGS = [("every 2nd", "couple_every 2"), ("every 4th", "couple_every 4"),
-             ("every 8th", "couple_every 8"), ("mixed precision", "precision mixed")]
+             ("every 8th", "couple_every 8"), ("mixed precision", "couple_every 1 precision mixed")]
 
 
 def couplings(part, grains, steps, words_of_fix):
     """Rows of the consolidation under 5 kPa on one sample: at parts of the time step, then at the
     step itself, then with words of fix pfv."""
-    first = consolidation(f"{part}_0", f"N={grains}")
+    first = consolidation(f"{part}_0", f"N={grains}", EACH_STEP)
     import scene  # the oedometer's, found now
     step = json.loads((KEPT / "oedometer" / f"{part}_0_run.json").read_text())["time_step"]
     rows = []
 
-    def add(name, word):
+    def add(name, *words):
         run = f"{part}_{len(rows) + 1}"
         same_sample(run, f"{part}_0")
         try:
-            result = consolidation(run, f"N={grains}", "KEEP=1", word)
+            result = consolidation(run, f"N={grains}", "KEEP=1", *words)
         except scene.Failure as failure:  # the fluid throws the grains about
             print(f"{name}: {failure}", flush=True)
             result = {"unstable": True}
         rows.append({"setting": name, **result})
 
     for divisor in steps:
-        add(f"time step / {divisor}", f"TIME_STEP={step / divisor:.17g}")
+        add(f"time step / {divisor}", f"TIME_STEP={step / divisor:.17g}", EACH_STEP)
     rows.append({"setting": "every step", **first})
     for name, words in words_of_fix:
         add(name, f"FIX={words}")
@@ -398,6 +401,11 @@ def write_scaling(report):
     return "\n".join(lines)
 
 
+def write_scenes(results):
+    scene_page.draw(results, FIGURES / "error_vs_time_scenes.png")
+    return scene_page.all_rows(results)
+
+
 def save(figure, name):
     FIGURES.mkdir(parents=True, exist_ok=True)
     figure.tight_layout()
@@ -405,7 +413,8 @@ def save(figure, name):
     plt.close(figure)
 
 
-PARTS = {"solvers": (measure_solvers, write_solvers),
+PARTS = {"scenes": (scene_errors.measure_scenes, write_scenes),
+         "solvers": (measure_solvers, write_solvers),
          "thresholds": (measure_thresholds, write_thresholds),
          "coupling": (measure_coupling, write_coupling),
          "coupling_5000": (measure_coupling_5000, write_coupling_5000),
@@ -420,6 +429,7 @@ def measured(wanted):
         if name in wanted or name not in results:
             print(f"measuring: {name}", flush=True)
             results[name] = PARTS[name][0]()
+            results.setdefault("sources", {})[name] = scene_errors.hash_of_part(name)
             MEASURED.write_text(json.dumps(results, indent=1) + "\n")
     return results
 
@@ -451,7 +461,21 @@ def settings_for_one_percent(results):
     return "\n".join(lines)
 
 
+def check():
+    """Says which parts were measured with other sources than these; exit status."""
+    known = json.loads(MEASURED.read_text())["sources"]
+    old = [name for name in PARTS if known.get(name) != scene_errors.hash_of_part(name)]
+    if old:
+        print(f"doc/error_vs_time.md is of other sources: {', '.join(old)}; doc/error_vs_time.py all makes it again")
+    return 1 if old else 0
+
+
 def main(words):
+    if words == ["check"]:
+        sys.exit(check())
+    if words == ["again"]:
+        sys.exit(scene_errors.again(json.loads(MEASURED.read_text())["scenes"]))
+    words = list(PARTS) if words == ["all"] else words
     unknown = set(words) - set(PARTS)
     if unknown:
         sys.exit(f"error_vs_time: no part {sorted(unknown)}; there are: {' '.join(PARTS)}")
@@ -462,6 +486,10 @@ def main(words):
     for name in PARTS:
         page = page.replace(f"@{name}@", text[name])
     page = page.replace("@settings@", settings_for_one_percent(results))
+    page = page.replace("@scenes_settings@", scene_page.for_one_percent(results["scenes"]))
+    page = page.replace("@scenes_interval@", scene_page.of_interval())
+    sources = [f"{name} {results['sources'].get(name, '(measured before this was kept)')}" for name in PARTS]
+    page = page.replace("@sources@", ", ".join(sources))
     pathlib.Path(__file__).with_name("error_vs_time.md").write_text(page, encoding="utf-8")
 
 
