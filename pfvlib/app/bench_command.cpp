@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_command.hpp"
 
+#include "work/peak_memory.hpp"
 #include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
 #include "numbers.hpp"
@@ -14,7 +15,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <sys/resource.h>
 #include <thread>
 
 namespace pfv::app {
@@ -88,12 +88,6 @@ Sample measure_once(PackingArrays packing, const Options& options, Report& repor
   sample.cpu["step"] = median(cpu);
   sample.wall["step"] = median(wall);
   return sample;
-}
-
-std::int64_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
 }
 
 struct Row {

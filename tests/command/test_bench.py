@@ -30,6 +30,13 @@ class Bench(CommandTest):
         self.assertIn("load_before", report["machine"])
         self.assertEqual(report["conductance"], "open_throat")
 
+    def test_memory_is_not_that_of_the_program_which_started_it(self):
+        large = bytearray(b"x") * 300_000_000
+        self.bench("--spheres", "2000", "--repeat", "1", "--report", "bench.json")
+        self.assertGreater(self.json("bench.json")["rows"][0]["memory_bytes"], 1_000_000)
+        self.solve("--face", "zlo:pressure=0", "--face", "zhi:pressure=1", "--viscosity", "1", "--report", "report.json")
+        self.assertLess(self.json("report.json")["peak_memory_bytes"], len(large))
+
     def test_precision_and_threads_reach_the_solver(self):
         self.bench("--spheres", "200", "--repeat", "1", "--precision", "mixed", "--threads", "2",
                    "--report", "bench.json")

@@ -2,6 +2,7 @@
 #include "darcy_grid/darcy_data.hpp"
 #include "results/balance_terms.hpp"
 #include "problem/solver_abilities.hpp"
+#include "work/peak_memory.hpp"
 
 #include <cmath>
 

@@ -3,8 +3,6 @@
 
 #include "network/pore_boundaries.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -89,12 +87,6 @@ double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, 
   const std::vector<double> areas = face_areas(container);
   const double scale = std::max(largest_pressure * *std::max_element(areas.begin(), areas.end()), driven);
   return scale > 0.0 ? sum.norm() / scale : 0.0;
-}
-
-std::int64_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace pfv

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -56,8 +55,5 @@ std::optional<double> permeability_of(const Container& container, const std::arr
 /// over what a macroscopic gradient drives where that is more.
 double force_balance_error(const Eigen::Vector3d& sum, double largest_pressure, const Container& container,
                            double driven);
-
-/// Bytes that the process has held at most.
-std::int64_t peak_memory();
 
 }  // namespace pfv

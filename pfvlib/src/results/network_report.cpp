@@ -3,6 +3,7 @@
 
 #include "physics/reynolds_numbers.hpp"
 #include "problem/solver_abilities.hpp"
+#include "work/peak_memory.hpp"
 
 #include <algorithm>
 
