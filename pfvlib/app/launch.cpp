@@ -62,8 +62,8 @@ void end_others(const Ranks* ranks, int status) {
   if (ranks && !ranks->failed_together()) MPI_Abort(MPI_COMM_WORLD, status);
 }
 
-DealtPacking::DealtPacking(PackingArrays rows, const Ranks* ranks) : rows_(std::move(rows)) {
-  if (ranks) parts_ = std::make_unique<PackingParts>(rows_.view(), *ranks);
+DealtPacking::DealtPacking(PackingArrays rows, const Container& container, const Ranks* ranks) : rows_(std::move(rows)) {
+  if (ranks) parts_ = std::make_unique<PackingParts>(rows_.view(), container, *ranks);
 }
 
 DealtPacking::~DealtPacking() = default;

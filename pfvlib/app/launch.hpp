@@ -2,6 +2,7 @@
 #pragma once
 
 #include "parallel/ranks.hpp"
+#include "pfv/container.hpp"
 #include "pfv/flow_model.hpp"
 #include "pfv/packing.hpp"
 
@@ -29,7 +30,7 @@ void end_others(const Ranks* ranks, int status);
 class DealtPacking {
  public:
   /// `rows`: those that this rank has read. Collective.
-  DealtPacking(PackingArrays rows, const Ranks* ranks);
+  DealtPacking(PackingArrays rows, const Container& container, const Ranks* ranks);
   ~DealtPacking();
   /// This rank's part, to solve with.
   Packing own() const;

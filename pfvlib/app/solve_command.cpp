@@ -255,7 +255,7 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
   const double start = cpu_seconds();
   WithObstacles read = read_spheres(request, ranks.get(), warnings);
   const Eigen::Index first = first_row(read.spheres.ids.size(), ranks.get());
-  const DealtPacking dealt(own_rows(std::move(read.spheres), ranks.get()), ranks.get());
+  const DealtPacking dealt(own_rows(std::move(read.spheres), ranks.get()), request.container, ranks.get());
   const Packing packing = dealt.own();
   const double read_seconds = cpu_seconds() - start;
 

@@ -46,6 +46,35 @@ class Ranks(CommandTest):
             for name in ("porosity", "permeability", "permeability_error", "inflow"):
                 self.assertAlmostEqual(every[name] / one[name], 1.0, delta=1e-9, msg=name)
 
+    def test_periodic_cells_upright_and_tilted(self):
+        """Also of spheres that stand periods away from the cell."""
+        with open(DENSE) as file:
+            header, *rows = file.read().splitlines()
+        far = [row.split(",") for row in rows]
+        for i, row in enumerate(far):
+            row[1] = repr(float(row[1]) + i % 5 - 2)
+        (self.folder / "far.csv").write_text("\n".join([header, *map(",".join, far)]) + "\n")
+        for cell in (["--periodic", "x,y,z", "--gradient", "3", "-2", "1"], ["--periodic", "x,y,z", "--tilt", "0.2", "-0.3", "0.4"],
+                     ["--periodic", "x,y", *THROUGH_FLOW]):
+            options = ["--packing", "far.csv", *UNIT_BOX, *cell, "--solver", "amg", "--tolerance", "1e-10"]
+            done = self.run_pfv("solve", *options, "--forces", "one.csv", "--report", "one.json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            one, expected = self.json("one.json"), numpy.array(list(self.forces("one.csv").values()))
+            done = self.on_ranks(3, *options, "--forces", "all.csv", "--report", "all.json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            every, found = self.json("all.json"), numpy.array(list(self.forces("all.csv").values()))
+            scale = numpy.sqrt((expected[:, :3] ** 2).sum(axis=1).mean())
+            self.assertLessEqual(numpy.abs(found - expected).max(), 1e-7 * scale)
+            self.assertEqual(every["ranks"], 3)
+            for name in ("spheres", "pores", "unknowns"):
+                self.assertEqual(every[name], one[name], name)
+            tensors = [report["permeability_tensor"] for report in (every, one)]
+            self.assertEqual(tensors[0] is None, tensors[1] is None)
+            if tensors[1] is not None:
+                numpy.testing.assert_allclose(*tensors, atol=1e-9 * numpy.abs(tensors[1]).max())
+            if one["permeability"] is not None:
+                self.assertAlmostEqual(every["permeability"] / one["permeability"], 1.0, delta=1e-9)
+
     def test_an_obstacle_among_the_grains(self):
         """A box, whose spheres are dealt out with the grains."""
         corners = [(x, y, z) for x in (0.3, 0.7) for y in (0.35, 0.65) for z in (0.4, 0.6)]

@@ -107,6 +107,16 @@ TEST(SharedBodies, NoPressureIsImposed) {
   expect_as_on_one_rank({packing, box, fluid, tight(), 1e-3, Deal::at_random});
 }
 
+/// Bodies that reach across the sides of a cell, and close off pores there.
+TEST(SharedBodies, InAPeriodicCell) {
+  pfv::Box box = drained();
+  box.periodic = {true, true, false};
+  box.pressure_gradient = {12.0, -7.0, 0.0};
+  for (const Deal deal : {Deal::by_place, Deal::at_random})
+    expect_as_on_one_rank({conglomerates(250, 3, 1.2), box, {}, tight(), 0.0, deal});
+  expect_as_on_one_rank({tetrahedra(3, 0.03).packing, box, {}, tight(), 0.0, Deal::at_random});
+}
+
 /// Clumps in much water are braked as a whole, by whatever ranks have their spheres.
 TEST(SharedBodies, ClumpsInOpenWater) {
   pfv::Box box;

@@ -14,27 +14,28 @@ namespace pfv {
 
 namespace {
 
-/// Width of the first halo in mean distances of the grains: in dense packings hardly a cell reaches further.
-constexpr double first_width = 5.5;
-constexpr std::size_t most_answers = 4;
-
-std::vector<Bounds> bounds_in(const std::vector<Ranks::Bytes>& messages) {
+std::vector<Bounds> bounds_of_all(const Bounds& own, const Ranks& ranks) {
+  Ranks::Bytes bytes;
+  append_bounds(bytes, own);
   std::vector<Bounds> bounds;
-  for (const Ranks::Bytes& bytes : messages) {
-    const std::vector<double> values = values_in<double>(bytes);
-    bounds.push_back({Eigen::Map<const Eigen::Vector3d>(values.data()), Eigen::Map<const Eigen::Vector3d>(values.data() + 3)});
-  }
+  for (const Ranks::Bytes& message : ranks.gather(bytes)) bounds.push_back(bounds_in(message).front());
   return bounds;
 }
 
-Ranks::Bytes bytes_of(const Bounds& bounds) {
-  Ranks::Bytes bytes;
+}  // namespace
+
+void append_bounds(Ranks::Bytes& bytes, const Bounds& bounds) {
   append(bytes, bounds.lower.data(), 3);
   append(bytes, bounds.upper.data(), 3);
-  return bytes;
 }
 
-}  // namespace
+std::vector<Bounds> bounds_in(const Ranks::Bytes& bytes) {
+  const std::vector<double> values = values_in<double>(bytes);
+  std::vector<Bounds> bounds;
+  for (std::size_t i = 0; i + 6 <= values.size(); i += 6)
+    bounds.push_back({Eigen::Map<const Eigen::Vector3d>(values.data() + i), Eigen::Map<const Eigen::Vector3d>(values.data() + i + 3)});
+  return bounds;
+}
 
 Halo::Halo(const Packing& own, const Container& container, OutsideGrains outside, const Ranks& ranks)
     : ranks_(&ranks), own_count_(own.size()), origin_(container.lower), lent_(ranks.count()), borrowed_(ranks.count()) {
@@ -52,11 +53,10 @@ Halo::Halo(const Packing& own, const Container& container, OutsideGrains outside
     ranks.together([] { throw InputError("the packing has no spheres; give at least one"); });
   take_own(own);
   share_places(container);
+  if (!container.any_periodic()) share_first_ghosts(container);
 }
 
 void Halo::check_own(const Packing& own, const Container& container, OutsideGrains outside) {
-  if (container.any_periodic())
-    throw InputError("a periodic box on several ranks is not supported: run it on one rank");
   active_ = select_grains(own, container, own.size() == 0 ? OutsideGrains::leave_out : outside).columns;
 }
 
@@ -100,15 +100,18 @@ void Halo::take_own(const Packing& own) {
 
 namespace {
 
-/// Of the grains where there are any: the container may reach far beyond a bed, m.
-double mean_distance(const std::vector<Bounds>& places, const Eigen::Vector3d& edges, const Halo::Totals& totals) {
+/// Of the grains where there are any: the container may reach far beyond a bed, m. Along a periodic axis they are all over.
+double mean_distance(const std::vector<Bounds>& places, const Container& container, const Halo::Totals& totals) {
+  const Eigen::Vector3d edges = container.upper - container.lower;
   Eigen::Vector3d lower = edges, upper = Eigen::Vector3d::Zero();
   for (const Bounds& place : places)
     if (!place.is_empty()) {
       lower = lower.cwiseMin(place.lower);
       upper = upper.cwiseMax(place.upper);
     }
-  const Eigen::Vector3d filled = (upper - lower).cwiseMax(0.0).array() + 2.0 * totals.mean_radius;
+  Eigen::Vector3d filled = (upper - lower).cwiseMax(0.0).array() + 2.0 * totals.mean_radius;
+  for (int axis = 0; axis < 3; ++axis)
+    if (container.periodic[axis]) filled[axis] = edges[axis];
   return std::cbrt(filled.cwiseMin(edges).prod() / std::max(1.0, totals.active));
 }
 
@@ -117,19 +120,29 @@ double mean_distance(const std::vector<Bounds>& places, const Eigen::Vector3d& e
 void Halo::share_places(const Container& container) {
   Bounds place;
   if (!active_.empty()) {
-    const Eigen::Matrix3Xd inside = seen_.positions(Eigen::all, active_);
-    place = {inside.rowwise().minCoeff() - origin_, inside.rowwise().maxCoeff() - origin_};
+    const Eigen::Matrix3Xd inside = container.any_periodic() ? Eigen::Matrix3Xd(active_grains(container).spheres.centres)
+                                                             : Eigen::Matrix3Xd(seen_.positions(Eigen::all, active_).colwise() - origin_);
+    place = {inside.rowwise().minCoeff(), inside.rowwise().maxCoeff()};
   }
-  places_ = bounds_in(ranks_->gather(bytes_of(place)));
+  places_ = bounds_of_all(place, *ranks_);
+}
+
+double Halo::first_width(const Container& container) const {
+  constexpr double mean_distances = 5.5;
+  return mean_distances * mean_distance(places_, container, totals_);
+}
+
+void Halo::share_first_ghosts(const Container& container) {
+  const Bounds& place = places_[ranks_->own()];
   const Eigen::Vector3d edges = container.upper - container.lower;
-  const double width = first_width * mean_distance(places_, edges, totals_);
+  const double width = first_width(container);
   constexpr double everywhere = std::numeric_limits<double>::infinity();
   known_ = place;
   for (int axis = 0; axis < 3 && !place.is_empty(); ++axis) {
     known_.lower[axis] = place.lower[axis] > width ? place.lower[axis] - width : -everywhere;
     known_.upper[axis] = place.upper[axis] < edges[axis] - width ? place.upper[axis] + width : everywhere;
   }
-  const std::vector<Bounds> wanted = bounds_in(ranks_->gather(bytes_of(known_)));
+  const std::vector<Bounds> wanted = bounds_of_all(known_, *ranks_);
   Lists columns(ranks_->count());
   for (int r = 0; r < ranks_->count(); ++r)
     if (r != ranks_->own() && !wanted[r].is_empty())
@@ -138,7 +151,6 @@ void Halo::share_places(const Container& container) {
   lend(columns);
 }
 
-/// Tells others of own grains, and takes in what they tell.
 void Halo::lend(const Lists& columns) {
   std::vector<Ranks::Bytes> to(ranks_->count());
   const Packing seen = seen_.view();

@@ -26,11 +26,15 @@ struct Bounds {
   }
 };
 
+void append_bounds(Ranks::Bytes& bytes, const Bounds& bounds);
+std::vector<Bounds> bounds_in(const Ranks::Bytes& bytes);
+
 /// The grains of this rank and, after them, those of others that it knows: its ghosts.
 class Halo {
  public:
-  /// Begins with the grains of others up to some five mean distances from its own. `own`: this rank's part of a packing, whose
-  /// columns come first. Throws InputError on all ranks alike. Collective.
+  /// Begins with the grains of others up to some five mean distances from its own; with periodic axes with none
+  /// (distributed/image_halo.hpp). `own`: this rank's part of a packing, whose columns come first. Throws InputError on
+  /// all ranks alike. Collective.
   Halo(const Packing& own, const Container& container, OutsideGrains outside, const Ranks& ranks);
 
   /// Of all ranks.
@@ -45,11 +49,15 @@ class Halo {
   Eigen::Index own_count() const { return own_count_; }
   int owner_of(int column) const { return owner_[column]; }
 
-  /// Where all grains are known, in coordinates from the container's lower corner; as far as the container goes.
+  /// Width of the first halo, m: in dense packings hardly a cell reaches further.
+  double first_width(const Container& container) const;
+  /// Where all grains are known, in coordinates from the container's lower corner; as far as the container goes. Not
+  /// with periodic axes.
   const Bounds& known() const { return known_; }
-  /// Of each rank, what its own grains fill, in these coordinates.
+  /// Of each rank, what its own grains fill, in these coordinates; in the cell, where that repeats.
   const std::vector<Bounds>& places() const { return places_; }
 
+  static constexpr std::size_t most_answers = 4;  ///< to one query
   /// An empty ball that may reach to grains of others: centre (coordinates as above, m) and power, m².
   struct Query {
     Eigen::Vector3d centre;
@@ -57,6 +65,11 @@ class Halo {
   };
   /// Asks for grains of less power than that, up to four for each; whether any rank got new ones. Collective.
   bool ask(const std::vector<Query>& queries);
+  /// Tells each rank of these own columns, which it must not know yet, and takes in what others tell. Collective.
+  void lend(const std::vector<std::vector<int>>& columns);
+  /// Own columns that a rank knows, and the columns of its grains here, in the same order on both sides.
+  const std::vector<int>& lent_to(int rank) const { return lent_[rank]; }
+  const std::vector<int>& borrowed_from(int rank) const { return borrowed_[rank]; }
   /// Forgets ghosts but those that are wanted; `wanted`: one entry a column of `seen`. Collective.
   void keep(const std::vector<char>& wanted);
   /// Which columns of `seen` are told to others, and by others.
@@ -72,7 +85,7 @@ class Halo {
   void refuse_shared_ids(const Packing& own) const;
   void take_own(const Packing& own);
   void share_places(const Container& container);
-  void lend(const Lists& columns);
+  void share_first_ghosts(const Container& container);
   void append_ghosts(int rank, const Ranks::Bytes& bytes);
   std::vector<int> answers(const std::vector<Query>& queries, int asker) const;
 

@@ -4,8 +4,10 @@
 #include "distributed/sphere_records.hpp"
 #include "pfv/error.hpp"
 #include "pfv/ranks.hpp"
+#include "problem/lattice.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -111,14 +113,28 @@ std::vector<int> parts_by_place(const Eigen::Ref<const Eigen::Matrix3Xd>& places
   return rank_of;
 }
 
-PackingParts::PackingParts(const Packing& rows, const Ranks& ranks)
+namespace {
+
+/// Where the spheres stand or, with periodic axes, those of their images in the cell.
+Eigen::Matrix3Xd places_in_cell(const Packing& rows, const Container& container) {
+  Eigen::Matrix3Xd places = rows.positions;
+  const Lattice lattice{container.upper - container.lower, container.tilt, container.periodic};
+  if (!container.any_periodic() || !(lattice.edges.array() > 0.0).all()) return places;
+  for (auto place : places.colwise())
+    place -= lattice.displacement(lattice.periods(place - container.lower, [](double x) { return std::floor(x); }));
+  return places;
+}
+
+}  // namespace
+
+PackingParts::PackingParts(const Packing& rows, const Container& container, const Ranks& ranks)
     : ranks_(&ranks), sent_(ranks.count()), rows_(rows.size()) {
   ranks.together([&] {
     for (Eigen::Index k = 0; k < rows.size(); ++k)
       if (!rows.positions.col(k).allFinite())
         throw InputError("sphere " + std::to_string(rows.ids[k]) + ": its position is not finite", {{rows.ids[k]}, {}});
   });
-  const std::vector<int> rank_of = parts_by_place(rows.positions, ranks);
+  const std::vector<int> rank_of = parts_by_place(places_in_cell(rows, container), ranks);
   for (std::size_t k = 0; k < rank_of.size(); ++k) sent_[rank_of[k]].push_back(static_cast<int>(k));
   deal(rows);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "parallel/ranks.hpp"
+#include "pfv/container.hpp"
 #include "pfv/packing.hpp"
 
 #include <vector>
@@ -12,8 +13,9 @@ namespace pfv {
 /// as many as the others (parts_by_place).
 class PackingParts {
  public:
-  /// `rows`: what this rank has at first. Throws InputError for positions that are not finite. Collective.
-  PackingParts(const Packing& rows, const Ranks& ranks);
+  /// `rows`: what this rank has at first; what repeats is dealt out by its places in the cell. Throws InputError for
+  /// positions that are not finite. Collective.
+  PackingParts(const Packing& rows, const Container& container, const Ranks& ranks);
   /// What it has in the end.
   const PackingArrays& own() const { return own_; }
   /// Values of the own spheres, one column each, back to where their rows came from; none where there are none.

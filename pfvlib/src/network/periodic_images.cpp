@@ -3,11 +3,13 @@
 
 #include "network/canonical_order.hpp"
 #include "network/facets.hpp"
+#include "pfv/error.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <string>
 #include <tuple>
 
 namespace pfv {
@@ -105,15 +107,27 @@ struct Way {
   Way back() const { return {to, from, {-shift[0], -shift[1], -shift[2]}}; }
 };
 
+/// Where the pores of the full network are in one period.
+struct Folding {
+  std::vector<int> home;      ///< number of each pore that lies in the period, or -1
+  std::vector<char> needed;   ///< it lies there, or is a neighbour of one that does
+  std::vector<PoreImage> places;  ///< of the needed ones
+  std::vector<char> whole;    ///< home pores with all their throats; empty: all are
+  bool is_whole(int home_pore) const { return whole.empty() || whole[home_pore]; }
+};
+
 /// True when each throat that leaves the cell comes in again as large on the other side. Where spheres
 /// nearly coincide their images may be joined into pores in different ways.
-bool repeats(const PoreNetwork& all, const Spheres& images, const std::vector<int>& home,
-             const std::vector<PoreImage>& places) {
+bool repeats(const PoreNetwork& all, const Spheres& images, const Folding& folding) {
+  const std::vector<int>& home = folding.home;
+  const std::vector<PoreImage>& places = folding.places;
   std::map<Way, Eigen::Vector3d> areas;
   double largest = 0.0;
   for (int t = 0; t < all.throats(); ++t) {
     const auto [i, j] = all.throat_pores[t];
     if (home[i] < 0 && home[j] < 0) continue;
+    if (!folding.needed[i] || !folding.needed[j] || !folding.is_whole(places[i].pore) || !folding.is_whole(places[j].pore))
+      continue;
     Eigen::Vector3d area = Eigen::Vector3d::Zero();
     for (int f = all.throat_facets[t]; f < all.throat_facets[t + 1]; ++f)
       area += area_vector(all.facet_vertices[f], images);
@@ -222,25 +236,9 @@ Lattice::Shift periods_of(const PoreNetwork& network, const Spheres& spheres, co
                                    spheres.centres.col(network.vertex_sphere[vertex]));
 }
 
-Images replicate(const Spheres& spheres, double margin) {
+Images images_of(const Spheres& spheres, const std::vector<SphereImage>& list) {
   Images images;
-  images.margin = margin;
-  const std::array<int, 3> reach = periods_within(spheres, margin);
-  std::vector<Eigen::Vector3d> centres;
-  for (int x = -reach[0]; x <= reach[0]; ++x)
-    for (int y = -reach[1]; y <= reach[1]; ++y)
-      for (int z = -reach[2]; z <= reach[2]; ++z)
-        for (int k = 0; k < spheres.size(); ++k) {
-          const Eigen::Vector3d centre =
-              spheres.centres.col(k) + displacement({x, y, z}, spheres);
-          const bool near =
-              (centre.array() >= -margin).all() &&
-              (centre.array() <= spheres.edges.array() + margin).all();
-          if (!near) continue;
-          centres.push_back(centre);
-          images.original.push_back(k);
-        }
-  const auto n = static_cast<Eigen::Index>(centres.size());
+  const auto n = static_cast<Eigen::Index>(list.size());
   images.spheres.edges = spheres.edges;
   images.spheres.walls = spheres.walls;
   images.spheres.volume = spheres.volume;
@@ -250,44 +248,95 @@ Images replicate(const Spheres& spheres, double margin) {
   images.spheres.ids.resize(n);
   images.spheres.centres.resize(3, n);
   images.spheres.radii.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    images.spheres.ids[i] = spheres.ids[images.original[i]];
-    images.spheres.centres.col(i) = centres[i];
-    images.spheres.radii[i] = spheres.radii[images.original[i]];
+  images.original.reserve(list.size());
+  for (const auto& [sphere, shift] : list) {
+    const auto i = static_cast<Eigen::Index>(images.original.size());
+    images.original.push_back(sphere);
+    images.spheres.ids[i] = spheres.ids[sphere];
+    images.spheres.centres.col(i) = spheres.centres.col(sphere) + displacement(shift, spheres);
+    images.spheres.radii[i] = spheres.radii[sphere];
   }
   return images;
 }
 
+std::vector<SphereImage> images_within(const Spheres& spheres, double margin) {
+  const std::array<int, 3> reach = periods_within(spheres, margin);
+  std::vector<SphereImage> list;
+  for (int x = -reach[0]; x <= reach[0]; ++x)
+    for (int y = -reach[1]; y <= reach[1]; ++y)
+      for (int z = -reach[2]; z <= reach[2]; ++z)
+        for (int k = 0; k < spheres.size(); ++k) {
+          const Eigen::Vector3d centre =
+              spheres.centres.col(k) + displacement({x, y, z}, spheres);
+          const bool near =
+              (centre.array() >= -margin).all() &&
+              (centre.array() <= spheres.edges.array() + margin).all();
+          if (near) list.push_back({k, {x, y, z}});
+        }
+  return list;
+}
+
+Images replicate(const Spheres& spheres, double margin) {
+  Images images = images_of(spheres, images_within(spheres, margin));
+  images.margin = margin;
+  return images;
+}
+
+/// An empty ball between images is no wider than the box's diagonal: a margin of twice that never
+/// helps. A slender cell with few spheres would need images without number from the beginning, one whose pores come out
+/// otherwise in each image in the end.
+void refuse_endless_images(const Lattice& lattice, double spheres, double largest_radius, double margin, double reach,
+                           bool first) {
+  const double most_images = 5e4 + 30.0 * spheres;
+  double images = spheres;
+  for (int axis = 0; axis < 3; ++axis)
+    if (lattice.periodic[axis]) images *= 1.0 + 2.0 * reach / lattice.edges[axis];
+  const bool endless = images > most_images;
+  if (endless && first)
+    throw InputError("the periodic cell is so slender, its spheres so few or so large, that its "
+                     "network would need more than " +
+                     std::to_string(static_cast<int>(most_images)) +
+                     " images; repeat the packing along the short edges of the cell");
+  if (endless || margin > 2.0 * lattice.edges.norm() + 4.0 * largest_radius)
+    throw InputError("the pores of the periodic cell do not repeat: spheres that nearly coincide, or of a cubic lattice that "
+                     "is off by some millionths of its spacing, make other pores in each image; remove or move duplicates, "
+                     "and leave a lattice as it is or move its spheres by a thousandth of the spacing or more");
+}
+
 namespace {
 
-/// Where the pores of the full network are in one period.
-struct Folding {
-  std::vector<int> home;      ///< number of each pore that lies in the period, or -1
-  std::vector<char> needed;   ///< it lies there, or is a neighbour of one that does
-  std::vector<PoreImage> places;  ///< of the needed ones
-};
-
-/// False where an image of a needed pore is not found.
-bool find_places(const PoreNetwork& all, const Spheres& spheres, double spacing, Folding& folding) {
-  folding.home.assign(all.pores(), -1);
-  folding.needed.assign(all.pores(), 0);
-  folding.places.resize(all.pores());
+/// Numbers the pores that lie in the period.
+std::vector<int> home_pores(const PoreNetwork& all, const Spheres& spheres) {
+  std::vector<int> home(all.pores(), -1);
   int pores = 0;
   for (int pore = 0; pore < all.pores(); ++pore)
-    if (shift_of(all.pore_centres.col(pore), spheres) == std::array<int, 3>{0, 0, 0})
-      folding.home[pore] = pores++;
+    if (shift_of(all.pore_centres.col(pore), spheres) == std::array<int, 3>{0, 0, 0}) home[pore] = pores++;
+  return home;
+}
+
+/// The pore of `all` in the period that `pore` is an image of, with its shift; -1: none there.
+PoreImage home_of(const PoreNetwork& all, const Spheres& spheres, const PoreFinder& finder, int pore) {
+  const Eigen::Vector3d centre = all.pore_centres.col(pore);
+  const std::array<int, 3> shift = shift_of(centre, spheres);
+  return {finder.find(centre - displacement(shift, spheres)), shift};
+}
+
+/// False where an image of a needed pore is not found, but for throats between pores that are not whole.
+bool find_places(const PoreNetwork& all, const Spheres& spheres, double spacing, Folding& folding) {
+  folding.needed.assign(all.pores(), 0);
+  folding.places.resize(all.pores());
   const PoreFinder finder(all, folding.home, spacing);
   for (const auto& both : all.throat_pores) {
+    const bool wanted = (folding.home[both[0]] >= 0 && folding.is_whole(folding.home[both[0]])) ||
+                        (folding.home[both[1]] >= 0 && folding.is_whole(folding.home[both[1]]));
     if (folding.home[both[0]] < 0 && folding.home[both[1]] < 0) continue;
     for (const int pore : both) {
       if (folding.needed[pore]) continue;
-      folding.needed[pore] = 1;
-      const Eigen::Vector3d centre = all.pore_centres.col(pore);
-      PoreImage& place = folding.places[pore];
-      place.shift = shift_of(centre, spheres);
-      const int found = finder.find(centre - displacement(place.shift, spheres));
-      if (found < 0) return false;
-      place.pore = folding.home[found];
+      PoreImage place = home_of(all, spheres, finder, pore);
+      if (place.pore >= 0) place.pore = folding.home[place.pore];
+      if (place.pore < 0 && wanted) return false;
+      folding.places[pore] = place;
+      folding.needed[pore] = place.pore >= 0;
     }
   }
   return true;
@@ -320,15 +369,73 @@ bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, 
           PoreNetwork& network) {
   network = {};
   Folding folding;
+  folding.home = home_pores(all, spheres);
   if (!find_places(all, spheres, spacing, folding)) return false;
   for (int c = 0; c < all.cells(); ++c)
     if (folding.needed[all.cell_pore[c]] && !is_settled(all, images, spheres, c)) return false;
-  if (!repeats(all, images.spheres, folding.home, folding.places)) return false;
+  if (!repeats(all, images.spheres, folding)) return false;
   const std::vector<FoldedThroat> throats = fold_throats(all, folding);
   std::vector<int> home_cell(all.cells(), -1);
   copy_pores_and_cells(all, folding.home, home_cell, network);
   copy_throats(all, throats, home_cell, spheres, network);
   find_hidden(images, spheres, network);
+  return true;
+}
+
+namespace {
+
+/// Leaves of the home pores those that images of wanted ones lead to; false where one is not there.
+bool take_wanted(const PoreNetwork& all, const Spheres& spheres, double spacing, const WantedPores& wanted,
+                 Folding& folding) {
+  const PoreFinder finder(all, folding.home, spacing);
+  std::vector<char> taken(all.pores(), 0), whole(all.pores(), 0);
+  for (int pore = 0; pore < all.pores(); ++pore) {
+    if (!wanted.any[pore]) continue;
+    const int home = home_of(all, spheres, finder, pore).pore;
+    if (home < 0 || (wanted.whole[pore] && !wanted.complete[home])) return false;
+    taken[home] = 1;
+    whole[home] = whole[home] || wanted.whole[pore];
+  }
+  int pores = 0;
+  for (int pore = 0; pore < all.pores(); ++pore) {
+    folding.home[pore] = taken[pore] ? pores++ : -1;
+    if (taken[pore]) folding.whole.push_back(whole[pore]);
+  }
+  return true;
+}
+
+/// Whether each whole pore has as many throats as its pore of the full network.
+bool has_all_throats(const PoreNetwork& all, const Folding& folding, const std::vector<FoldedThroat>& throats) {
+  std::vector<int> missing(folding.whole.size(), 0);
+  for (const auto& both : all.throat_pores)
+    for (const int pore : both)
+      if (folding.home[pore] >= 0) ++missing[folding.home[pore]];
+  for (const FoldedThroat& throat : throats) {
+    --missing[throat.way.from];
+    --missing[throat.way.to];
+  }
+  for (std::size_t pore = 0; pore < missing.size(); ++pore)
+    if (folding.whole[pore] && missing[pore] != 0) return false;
+  return true;
+}
+
+}  // namespace
+
+bool fold_part(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
+               const WantedPores& wanted, PoreNetwork& network, std::vector<char>& whole) {
+  network = {};
+  Folding folding;
+  folding.home = home_pores(all, spheres);
+  if (!take_wanted(all, spheres, spacing, wanted, folding) || !find_places(all, spheres, spacing, folding) ||
+      !repeats(all, images.spheres, folding))
+    return false;
+  const std::vector<FoldedThroat> throats = fold_throats(all, folding);
+  if (!has_all_throats(all, folding, throats)) return false;
+  std::vector<int> home_cell(all.cells(), -1);
+  copy_pores_and_cells(all, folding.home, home_cell, network);
+  copy_throats(all, throats, home_cell, spheres, network);
+  network.vertex_sphere = images.original;
+  whole = std::move(folding.whole);
   return true;
 }
 

@@ -8,6 +8,12 @@
 
 namespace pfv {
 
+/// A sphere's image, so many periods away.
+struct SphereImage {
+  int sphere;
+  Lattice::Shift shift;
+};
+
 /// The spheres of a periodic cell and those of their images that stand within a margin around it.
 struct Images {
   Spheres spheres;
@@ -15,7 +21,19 @@ struct Images {
   double margin = 0.0;        ///< m
 };
 
+/// Those within a margin around the cell, in the order of their shifts.
+std::vector<SphereImage> images_within(const Spheres& spheres, double margin);
 Images replicate(const Spheres& spheres, double margin);
+/// Those of a list; no margin.
+Images images_of(const Spheres& spheres, const std::vector<SphereImage>& list);
+
+/// How far around a cell images are needed at least, m.
+inline double least_margin(double spacing, double largest_radius) { return 2.5 * spacing + 2.0 * largest_radius; }
+/// Throws InputError for a cell that needs images without number: from the beginning, or since its pores come out
+/// otherwise in each image. `spheres`: how many; `reach`: how far around the cell their images go, that margin or farther;
+/// `first`: no margin has been tried.
+void refuse_endless_images(const Lattice& lattice, double spheres, double largest_radius, double margin, double reach,
+                           bool first);
 
 /// How many periods a vertex of the network, which may be an image, stands away from its sphere. `vertices`: what the
 /// vertices stand for.
@@ -28,5 +46,17 @@ Lattice::Shift periods_of(const PoreNetwork& network, const Spheres& spheres, co
 /// packing.
 bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
           PoreNetwork& network);
+
+/// What one of several ranks wants of a period: pores of `all`, wherever their images stand.
+struct WantedPores {
+  std::vector<char> any, whole;  ///< one entry a pore of `all`; whole ones with all their throats
+  std::vector<char> complete;    ///< pores of `all` that have all their throats there
+};
+
+/// The same with the pores of the period that are wanted alone, in the order of all of them; of a pore that is not whole,
+/// throats may be missing. `whole` becomes those of the network. Returns false also where something that is wanted is
+/// not there; which cells hold is for the caller to know.
+bool fold_part(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
+               const WantedPores& wanted, PoreNetwork& network, std::vector<char>& whole);
 
 }  // namespace pfv

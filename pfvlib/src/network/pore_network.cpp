@@ -174,26 +174,6 @@ std::pair<double, int> outside_by(const PoreNetwork& network, const Spheres& sph
   return worst;
 }
 
-/// An empty ball between images is no wider than the box's diagonal: a margin of twice that never
-/// helps. A slender cell with few spheres would need images without number from the beginning, one whose pores come out
-/// otherwise in each image in the end.
-void refuse_endless_images(const Spheres& spheres, double margin, double least_margin) {
-  const double most_images = 5e4 + 30.0 * spheres.size();
-  double images = spheres.size();
-  for (int axis = 0; axis < 3; ++axis)
-    if (spheres.periodic[axis]) images *= 1.0 + 2.0 * margin / spheres.edges[axis];
-  const bool endless = images > most_images;
-  if (endless && margin == least_margin)
-    throw InputError("the periodic cell is so slender, its spheres so few or so large, that its "
-                     "network would need more than " +
-                     std::to_string(static_cast<int>(most_images)) +
-                     " images; repeat the packing along the short edges of the cell");
-  if (endless || margin > 2.0 * spheres.edges.norm() + 4.0 * spheres.radii.maxCoeff())
-    throw InputError("the pores of the periodic cell do not repeat: spheres that nearly coincide, or of a cubic lattice that "
-                     "is off by some millionths of its spacing, make other pores in each image; remove or move duplicates, "
-                     "and leave a lattice as it is or move its spheres by a thousandth of the spacing or more");
-}
-
 }  // namespace
 
 Cells find_cells(const Spheres& spheres) {
@@ -229,9 +209,9 @@ PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin) {
     space.network = network_of(find_cells(spheres), spheres, spacing);
     space.spheres = spheres;
   } else {
-    const double least_margin = 2.5 * spacing + 2.0 * spheres.radii.maxCoeff();
-    for (double margin = least_margin;; margin *= 1.5) {
-      refuse_endless_images(spheres, margin, least_margin);
+    const double largest = spheres.radii.maxCoeff(), least = least_margin(spacing, largest);
+    for (double margin = least;; margin *= 1.5) {
+      refuse_endless_images(spheres.lattice(), spheres.size(), largest, margin, margin, margin == least);
       Images images = replicate(spheres, margin);
       const PoreNetwork all = network_of(find_cells(images.spheres), images.spheres, spacing);
       if (fold(all, images, spheres, spacing, space.network)) {

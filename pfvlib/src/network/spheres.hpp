@@ -43,6 +43,7 @@ struct Spheres {
   Eigen::VectorXd displaced;  ///< m³ of fluid that each takes the place of; empty: whole spheres
   std::array<bool, 3> periodic{false, false, false};
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  ///< of a periodic cell, m
+  double spread = 0.0;  ///< of images: largest extent of those that one rank would have, m; 0: that of these
 
   Lattice lattice() const { return {edges, tilt, periodic}; }
   int size() const { return static_cast<int>(radii.size()); }

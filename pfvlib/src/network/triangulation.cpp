@@ -76,9 +76,10 @@ std::vector<Flat> flats_of(const Spheres& spheres) {
 Site flat_site(const Spheres& spheres, const Flat& flat) {
   double extent = spheres.edges.maxCoeff();
   if (spheres.size() > 0)  // images of a periodic box stand outside it
-    extent = std::max(extent, (spheres.centres.rowwise().maxCoeff() -
-                               spheres.centres.rowwise().minCoeff())
-                                  .maxCoeff());
+    extent = std::max(extent, spheres.spread > 0.0 ? spheres.spread
+                                                   : (spheres.centres.rowwise().maxCoeff() -
+                                                      spheres.centres.rowwise().minCoeff())
+                                                         .maxCoeff());
   // a power of two, so that R and R² are exact
   const double radius = std::exp2(std::ceil(std::log2(wall_radius_in_box_lengths * extent)));
   Eigen::Vector3d centre = 0.5 * spheres.edges;

@@ -356,7 +356,7 @@ Loads multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures) {
 
 Loads gradient_forces(const PoreNetwork& network, const Spheres& vertices, const Throats& throats,
                       const ViscousShares& shares, int spheres, ForceParts parts,
-                      const Eigen::Vector3d& gradient) {
+                      const Eigen::Vector3d& gradient, const Share& share) {
   const Makings makings{network, vertices, throats, shares, spheres, parts};
   Loads loads = no_motion(spheres, vertices.wall_count());
   ThroatLoads loads_of_throat(makings);
@@ -369,7 +369,8 @@ Loads gradient_forces(const PoreNetwork& network, const Spheres& vertices, const
     loads_of_throat(t, own.data());
     for (int f = first; f < network.throat_facets[t + 1]; ++f)
       for (int k = 0; k < 3; ++k)
-        if (makings.area(t, f, k) != 0.0)
+        if (makings.area(t, f, k) != 0.0 &&
+            (makings.row(f, k) < spheres || share.owns_pore(network.throat_pores[t][0])))
           loads.col(makings.row(f, k)) += drop * own[3 * (f - first) + k];
   }
   return loads;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "network/spheres.hpp"
+#include "parallel/share.hpp"
 #include "parallel/team.hpp"
 #include "physics/rigid_motion.hpp"
 #include "physics/throats.hpp"
@@ -64,10 +65,11 @@ ForceMatrix force_matrix(const PoreNetwork& network, const Spheres& vertices,
 void multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures, Team& team, Loads& loads);
 Loads multiply(const ForceMatrix& matrix, const Eigen::VectorXd& pressures);
 
-/// What a macroscopic gradient (Pa/m) adds to S p where throats reach into images: 6 x (N + 6).
+/// What a macroscopic gradient (Pa/m) adds to S p where throats reach into images: 6 x (N + 6). On several ranks a throat
+/// pushes on faces at one of them.
 Loads gradient_forces(const PoreNetwork& network, const Spheres& vertices, const Throats& throats,
                       const ViscousShares& shares, int spheres, ForceParts parts,
-                      const Eigen::Vector3d& gradient);
+                      const Eigen::Vector3d& gradient, const Share& share = {});
 
 /// Mean pressure over each sphere's surface: pores weighted with the solid angle of their cells, Pa.
 /// Around an image a macroscopic gradient has raised it by the gradient times the image's offset.

@@ -110,12 +110,14 @@ namespace {
 /// What the macroscopic gradient pushes into the pores of one period, across the surface that parts
 /// them from their images; grains and walls carry it.
 Eigen::Vector3d driving_force(const BuiltNetwork& built, const Solution& solution) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(3);
   if (solution.container.pressure_gradient.isZero(0.0)) return sum;
   const PoreNetwork& network = built.network;
   for (int t = 0; t < network.throats(); ++t)
-    sum += solution.container.pressure_gradient.dot(network.throat_offset(t)) *
-           built.throats.area[t] * built.throats.normal.col(t);
+    if (built.share.owns_pore(network.throat_pores[t][0]))
+      sum += solution.container.pressure_gradient.dot(network.throat_offset(t)) *
+             built.throats.area[t] * built.throats.normal.col(t);
+  built.share.add(sum);
   return sum;
 }
 

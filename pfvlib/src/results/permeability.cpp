@@ -5,6 +5,7 @@
 #include "results/balance.hpp"
 #include "step/operators.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -16,14 +17,17 @@ namespace {
 
 /// Superficial velocity (m/s) through a periodic box: the sum over throats of flow rate times the way
 /// from pore to pore, over the volume.
-Eigen::Vector3d superficial_velocity(const PoreNetwork& network, const std::vector<double>& fluxes,
+Eigen::Vector3d superficial_velocity(const BuiltNetwork& built, const std::vector<double>& fluxes,
                                      double volume) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const PoreNetwork& network = built.network;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(3);
   for (int t = 0; t < network.throats(); ++t) {
     const auto [i, j] = network.throat_pores[t];
+    if (!built.share.owns_pore(i)) continue;
     sum += fluxes[t] * (network.pore_centres.col(j) + network.throat_offset(t) -
                         network.pore_centres.col(i));
   }
+  built.share.add(sum);
   return sum / volume;
 }
 
@@ -33,7 +37,7 @@ std::optional<double> permeability_along_gradient(const BuiltNetwork& built, dou
                                                   const std::vector<double>& fluxes) {
   const Eigen::Vector3d& gradient = solution.container.pressure_gradient;
   const Eigen::Vector3d velocity =
-      superficial_velocity(built.network, fluxes, solution.geometry.volume);
+      superficial_velocity(built, fluxes, solution.geometry.volume);
   return -viscosity * velocity.dot(gradient) / gradient.squaredNorm();
 }
 
@@ -70,8 +74,11 @@ std::optional<TensorFlow> tensor_flow(const BuiltNetwork& built, double viscosit
                                       const Solution& solution, std::int64_t& solves) {
   if (!solution.container.any_periodic() || solution.moving || built.kept.compressible()) return {};
   // a pressure on another face excludes a gradient
-  for (const auto& contact : built.boundaries.contacts)
-    if (boundary_of(solution.container, contact.boundary).is_open()) return {};
+  const auto& contacts = built.boundaries.contacts;
+  if (built.share.any(std::any_of(contacts.begin(), contacts.end(), [&](const auto& contact) {
+        return boundary_of(solution.container, contact.boundary).is_open();
+      })))
+    return {};
   const PoreNetwork& network = built.network;
   TensorFlow result;
   Eigen::Matrix3d& tensor = result.permeability;
@@ -80,15 +87,15 @@ std::optional<TensorFlow> tensor_flow(const BuiltNetwork& built, double viscosit
     if (!solution.container.periodic[axis]) continue;
     const Eigen::Vector3d gradient = Eigen::Vector3d::Unit(axis);
     const Eigen::VectorXd pressures = homogeneous_pressures(
-        built, gradient_sources(network, built.conductances.value, gradient), solves);
+        built, gradient_sources(built, gradient), solves);
     std::vector<double> fluxes(network.throats());
     for (int t = 0; t < network.throats(); ++t) {
       const double drop = driving_pressure(network, t, pressures, gradient);
       fluxes[t] = built.conductances.value[t] * drop;
-      result.dissipation[t] += fluxes[t] * drop;
+      if (built.share.owns_pore(network.throat_pores[t][0])) result.dissipation[t] += fluxes[t] * drop;
     }
     tensor.col(axis) = -viscosity *
-                       superficial_velocity(network, fluxes, solution.geometry.volume);
+                       superficial_velocity(built, fluxes, solution.geometry.volume);
   }
   for (int axis = 0; axis < 3; ++axis)
     if (!solution.container.periodic[axis]) tensor.row(axis).setZero();

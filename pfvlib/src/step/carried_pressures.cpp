@@ -22,30 +22,38 @@ std::vector<std::pair<CellName, int>> named_cells(const BuiltNetwork& built) {
   return names;
 }
 
-/// For each cell of `now` the cell of `old` with the same vertices, or -1.
+Eigen::Vector3d way_between(const BuiltNetwork& old, int before, const BuiltNetwork& now, int after) {
+  return now.network.origin + now.network.cell_centres.col(after) - old.network.origin -
+         old.network.cell_centres.col(before);
+}
+
+/// For each cell of `now` the cell of `old` with the same vertices, or -1; of several, which images may have, the one
+/// that has moved least.
 std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& now) {
   const auto before = named_cells(old), after = named_cells(now);
   std::vector<int> survivors(now.network.cells(), -1);
   auto next = before.begin();
   for (const auto& [name, cell] : after) {
     while (next != before.end() && next->first < name) ++next;
-    if (next != before.end() && next->first == name) survivors[cell] = next->second;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto same = next; same != before.end() && same->first == name; ++same) {
+      const double length = wrapped_way(now, way_between(old, same->second, now, cell)).length;
+      if (survivors[cell] >= 0 && !(length < least)) continue;
+      least = length;
+      survivors[cell] = same->second;
+    }
   }
   return survivors;
 }
 
-/// What a macroscopic gradient has raised the pressure of a cell by, Pa, that the grains have carried across the
-/// border of a periodic cell: the new network has another image of it at home.
-double raised_by_wrapping(const BuiltNetwork& old, int before, const BuiltNetwork& now, int after) {
-  const Eigen::Vector3d& gradient = now.container.pressure_gradient;
-  if (gradient.isZero(0.0)) return 0.0;
-  const Lattice lattice = now.grains.spheres.lattice();
-  const Eigen::Vector3d way = now.network.origin + now.network.cell_centres.col(after) - old.network.origin -
-                              old.network.cell_centres.col(before);
-  return gradient.dot(lattice.displacement(lattice.nearest(way)));
-}
-
 }  // namespace
+
+Wrapped wrapped_way(const BuiltNetwork& now, const Eigen::Vector3d& way) {
+  const Lattice lattice = now.grains.spheres.lattice();
+  const Eigen::Vector3d periods = lattice.displacement(lattice.nearest(way));
+  const Eigen::Vector3d& gradient = now.container.pressure_gradient;
+  return {(way - periods).norm(), gradient.isZero(0.0) ? 0.0 : gradient.dot(periods)};
+}
 
 Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values,
                                   const BuiltNetwork& now) {
@@ -59,7 +67,7 @@ Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd
   for (int c = 0; c < now.network.cells(); ++c)
     if (survivors[c] >= 0) {
       sum[now.network.cell_pore[c]] +=
-          old_values[old.network.cell_pore[survivors[c]]] + raised_by_wrapping(old, survivors[c], now, c);
+          old_values[old.network.cell_pore[survivors[c]]] + wrapped_way(now, way_between(old, survivors[c], now, c)).raised;
       ++count[now.network.cell_pore[c]];
     }
   int cell = 0;

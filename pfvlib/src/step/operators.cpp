@@ -2,6 +2,7 @@
 #include "step/operators.hpp"
 
 #include "physics/cell_stretching.hpp"
+#include "physics/macroscopic_gradient.hpp"
 
 #include <algorithm>
 
@@ -34,11 +35,11 @@ void make_force_matrix(BuiltNetwork& built, const Problem& problem, Counts& coun
                    built.grains.spheres.size(),
                    {true, true, problem.options.torques, turning || !problem.container.is_box},
                    *problem.team);
-  leave_faces_to_owners(built);
   if (stretching) {
     add_stretching(*built.operators.force_matrix, built.network, built.grains.spheres, built.vertices,
                    built.throats, built.operators.viscous_shares);
   }
+  leave_faces_to_owners(built);
   built.operators.sum_order.reset();
   ++counts.force_matrix;
 }
@@ -126,7 +127,7 @@ const Loads& gradient_loads(BuiltNetwork& built, const Problem& problem) {
   if (!kept || kept->first != gradient)
     kept = {gradient, gradient_forces(built.network, built.vertices, built.throats,
                                       built.operators.viscous_shares, built.grains.spheres.size(),
-                                      {true, true, problem.options.torques}, gradient)};
+                                      {true, true, problem.options.torques}, gradient, built.share)};
   return kept->second;
 }
 
@@ -181,6 +182,12 @@ void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen
     reciprocal_rates(*built.operators.force_matrix, *built.operators.sum_order, built.bases, motion, team, rates);
   for (const int pore : built.unknowns.enclosed_pores) rates[pore] = 0.0;
   leave_to_owners(built.share, rates);
+}
+
+Eigen::VectorXd gradient_sources(const BuiltNetwork& built, const Eigen::Vector3d& gradient) {
+  Eigen::VectorXd sources = gradient_sources(built.network, built.conductances.value, gradient);
+  leave_to_owners(built.share, sources);
+  return sources;
 }
 
 Eigen::VectorXd gross_rates(const BuiltNetwork& built, const Motion& motion) {

@@ -36,6 +36,9 @@ Loads resisting_forces(const BuiltNetwork& built, double viscosity, const Motion
 /// R of the spheres.
 std::vector<ResistanceBlock> resistance_blocks(const BuiltNetwork& built, double viscosity);
 
+/// What a macroscopic gradient (Pa/m) drives into each pore, m³/s.
+Eigen::VectorXd gradient_sources(const BuiltNetwork& built, const Eigen::Vector3d& gradient);
+
 /// dV/dt of each pore, m³/s, from the network as it was built.
 void rates_of(const BuiltNetwork& built, const Motion& motion, Team& team, Eigen::VectorXd& rates);
 /// What they are summed from, m³/s; zeros where none have been asked for.

@@ -3,7 +3,6 @@
 
 #include "pfv/error.hpp"
 #include "physics/cell_stretching.hpp"
-#include "physics/macroscopic_gradient.hpp"
 #include "problem/solver_abilities.hpp"
 #include "step/continuity.hpp"
 #include "step/network_builder.hpp"
@@ -102,7 +101,7 @@ Eigen::VectorXd sources_of(const BuiltNetwork& built, const Solution& solution) 
         built.kept.storage->array() * (solution.previous_pressures.array() - solution.reference);
   const Eigen::Vector3d& gradient = solution.container.pressure_gradient;
   if (!gradient.isZero(0.0))
-    sources += gradient_sources(built.network, built.conductances.value, gradient);
+    sources += gradient_sources(built, gradient);
   return sources;
 }
 

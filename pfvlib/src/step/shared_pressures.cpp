@@ -9,21 +9,29 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace pfv {
 
 namespace {
 
-struct NamedPressure {
+/// Where a cell of a name is, m: its dual vertex.
+struct NamedPlace {
   CellName name;
+  std::array<double, 3> place;
+};
+
+struct NamedPressure {
+  NamedPlace cell;
   double pressure;
 };
 
-bool before(const NamedPressure& a, const NamedPressure& b) { return a.name < b.name; }
+bool before(const NamedPressure& a, const NamedPressure& b) { return a.cell.name < b.cell.name; }
 
-CellName name_of_cell(const BuiltNetwork& built, int cell) {
-  return cell_name(built.network.cell_vertices[cell], built.vertices);
+NamedPlace named_place(const BuiltNetwork& built, int cell) {
+  const Eigen::Vector3d place = built.network.origin + built.network.cell_centres.col(cell);
+  return {cell_name(built.network.cell_vertices[cell], built.vertices), {place[0], place[1], place[2]}};
 }
 
 /// The rank that is told of a cell of this name.
@@ -44,8 +52,8 @@ std::vector<NamedPressure> told_cells(const BuiltNetwork* old, const Eigen::Vect
   for (int c = 0; old && c < old->network.cells(); ++c) {
     const int pore = old->network.cell_pore[c];
     if (!old->share.own_pores[pore]) continue;
-    const NamedPressure cell{name_of_cell(*old, c), values[pore]};
-    append(to[teller(cell.name, ranks.count())], &cell, 1);
+    const NamedPressure cell{named_place(*old, c), values[pore]};
+    append(to[teller(cell.cell.name, ranks.count())], &cell, 1);
   }
   std::vector<NamedPressure> told;
   for (const Ranks::Bytes& bytes : ranks.hand_over(to))
@@ -70,6 +78,21 @@ std::vector<std::vector<Answer>> answers_of(const std::vector<Ranks::Bytes>& to,
   return answers;
 }
 
+/// Of cells of one name, which images may have, the one that has moved least; its pressure as it is there now.
+Answer pressure_of(const NamedPlace& asked, const std::vector<NamedPressure>& told, const BuiltNetwork& now) {
+  Answer answer{0.0, 0.0};
+  double least = std::numeric_limits<double>::infinity();
+  for (auto cell = std::lower_bound(told.begin(), told.end(), NamedPressure{asked, 0.0}, before);
+       cell != told.end() && cell->cell.name == asked.name; ++cell) {
+    const Wrapped way = wrapped_way(now, Eigen::Map<const Eigen::Vector3d>(asked.place.data()) -
+                                             Eigen::Map<const Eigen::Vector3d>(cell->cell.place.data()));
+    if (!(way.length < least)) continue;
+    least = way.length;
+    answer = {1.0, cell->pressure + way.raised};
+  }
+  return answer;
+}
+
 /// Of each own pore of `now` the sum of the pressures of its cells that were there before, and how many there are.
 void sum_of_survivors(const std::vector<NamedPressure>& told, const BuiltNetwork& now, Eigen::VectorXd& sum,
                       Eigen::VectorXi& count) {
@@ -78,15 +101,12 @@ void sum_of_survivors(const std::vector<NamedPressure>& told, const BuiltNetwork
   std::vector<int> asked(now.network.cells(), -1);
   for (int c = 0; c < now.network.cells(); ++c) {
     if (!now.share.own_pores[now.network.cell_pore[c]]) continue;
-    const CellName name = name_of_cell(now, c);
-    asked[c] = teller(name, ranks.count());
-    append(to[asked[c]], &name, 1);
+    const NamedPlace cell = named_place(now, c);
+    asked[c] = teller(cell.name, ranks.count());
+    append(to[asked[c]], &cell, 1);
   }
-  const auto answers = answers_of<CellName>(to, ranks, [&](const CellName& name) -> Answer {
-    const auto found = std::lower_bound(told.begin(), told.end(), NamedPressure{name, 0.0}, before);
-    if (found == told.end() || found->name != name) return {0.0, 0.0};
-    return {1.0, found->pressure};
-  });
+  const auto answers =
+      answers_of<NamedPlace>(to, ranks, [&](const NamedPlace& cell) { return pressure_of(cell, told, now); });
   std::vector<std::size_t> next(ranks.count(), 0);
   for (int c = 0; c < now.network.cells(); ++c) {
     if (asked[c] < 0) continue;
@@ -106,13 +126,14 @@ class OldPlaces {
       for (const Vertex v : cell) is_wall(v) ? reach(old_->vertices.wall(v)) : reach(old_->vertices.centres.col(v));
   }
 
-  /// How far outside a cell of a whole pore the place lies, m, and the pressure there; infinite where none is near.
-  Answer at(const Eigen::Vector3d& absolute) {
+  /// How far outside a cell of a whole pore the place lies, m, and the pressure there; infinite where none is near, but
+  /// for `anyhow`: in a periodic cell a place may lie in an image.
+  Answer at(const Eigen::Vector3d& absolute, bool anyhow = false) {
     constexpr double nowhere = std::numeric_limits<double>::infinity();
     if (!old_) return {nowhere, 0.0};
     const Eigen::Vector3d place =
         (absolute - old_->network.origin).cwiseMax(0.0).cwiseMin(old_->vertices.edges);
-    if ((place.array() < lower_.array()).any() || (place.array() > upper_.array()).any()) return {nowhere, 0.0};
+    if (!anyhow && ((place.array() < lower_.array()).any() || (place.array() > upper_.array()).any())) return {nowhere, 0.0};
     cell_ = locate(old_->network, old_->vertices, place, cell_);
     const int pore = old_->network.cell_pore[cell_];
     if (!old_->share.whole_pores[pore]) return {nowhere, 0.0};
@@ -140,35 +161,57 @@ class OldPlaces {
   int cell_ = 0;
 };
 
-/// Own pores of which nothing was there before take what is found at their places, here or elsewhere.
-void fill_from_places(const BuiltNetwork* old, const Eigen::VectorXd& old_values, const BuiltNetwork& now,
-                      const Eigen::VectorXi& count, Eigen::VectorXd& values) {
+/// Asks all ranks for old pressures at the places of pores; those of which none knows are returned.
+std::vector<int> fill_from_ranks(const std::vector<int>& pores, const BuiltNetwork& now, OldPlaces& places, bool anyhow,
+                                 Eigen::VectorXd& values) {
   const Ranks& ranks = *now.share.ranks;
-  OldPlaces places(old, old_values);
-  std::vector<int> elsewhere;
   Ranks::Bytes questions;
-  for (int p = 0; p < now.network.pores(); ++p) {
-    if (!now.share.own_pores[p] || count[p] > 0) continue;
+  for (const int p : pores) {
     const Eigen::Vector3d place = now.network.origin + now.network.pore_centres.col(p);
-    const Answer own = places.at(place);
-    values[p] = own.pressure;
-    if (own.found == 0.0) continue;
-    elsewhere.push_back(p);
     append(questions, place.data(), 3);
   }
   const auto answers = answers_of<std::array<double, 3>>(
-      std::vector<Ranks::Bytes>(ranks.count(), questions), ranks,
-      [&](const std::array<double, 3>& place) { return places.at(Eigen::Map<const Eigen::Vector3d>(place.data())); });
-  for (std::size_t i = 0; i < elsewhere.size(); ++i) {
+      std::vector<Ranks::Bytes>(ranks.count(), questions), ranks, [&](const std::array<double, 3>& place) {
+        return places.at(Eigen::Map<const Eigen::Vector3d>(place.data()), anyhow);
+      });
+  std::vector<int> left;
+  for (std::size_t i = 0; i < pores.size(); ++i) {
     Answer best{std::numeric_limits<double>::infinity(), 0.0};
     for (const std::vector<Answer>& of_rank : answers)
       if (of_rank[i].found < best.found) best = of_rank[i];
-    values[elsewhere[i]] = best.pressure;
+    values[pores[i]] = best.pressure;
+    if (!std::isfinite(best.found)) left.push_back(pores[i]);
   }
+  return left;
 }
 
+/// Own pores of which nothing was there before take what is found at their places, here or elsewhere.
+void fill_from_places(const BuiltNetwork* old, const Eigen::VectorXd& old_values, const BuiltNetwork& now,
+                      const Eigen::VectorXi& count, Eigen::VectorXd& values) {
+  OldPlaces places(old, old_values);
+  std::vector<int> elsewhere;
+  for (int p = 0; p < now.network.pores(); ++p) {
+    if (!now.share.own_pores[p] || count[p] > 0) continue;
+    const Answer own = places.at(now.network.origin + now.network.pore_centres.col(p));
+    values[p] = own.pressure;
+    if (own.found != 0.0) elsewhere.push_back(p);
+  }
+  const std::vector<int> left = fill_from_ranks(elsewhere, now, places, false, values);
+  if (now.container.any_periodic()) fill_from_ranks(left, now, places, true, values);
+}
+
+/// A vertex in the order of the curve, images of one sphere by their places.
+struct VertexRank {
+  std::uint64_t number;
+  std::int64_t id;
+  std::array<double, 3> place;
+  bool operator<(const VertexRank& other) const {
+    return std::tie(number, id, place) < std::tie(other.number, other.id, other.place);
+  }
+};
+
 /// A pore's place among all: the vertices of its first cell along the curve, walls last.
-using PoreRank = std::array<std::pair<std::uint64_t, std::int64_t>, 4>;
+using PoreRank = std::array<VertexRank, 4>;
 
 std::vector<PoreRank> own_pores_in_order(const BuiltNetwork& built) {
   const std::vector<std::uint64_t> numbers = curve_numbers(built.vertices);
@@ -182,8 +225,12 @@ std::vector<PoreRank> own_pores_in_order(const BuiltNetwork& built) {
     PoreRank rank;
     for (int i = 0; i < 4; ++i) {
       const Vertex v = built.network.cell_vertices[c][i];
-      rank[i] = is_wall(v) ? std::pair(std::numeric_limits<std::uint64_t>::max(), std::int64_t(wall_number(v)))
-                           : std::pair(numbers[v], built.vertices.ids[v]);
+      if (is_wall(v)) {
+        rank[i] = {std::numeric_limits<std::uint64_t>::max(), wall_number(v), {}};
+        continue;
+      }
+      const auto place = built.vertices.centres.col(v);
+      rank[i] = {numbers[v], built.vertices.ids[v], {place[0], place[1], place[2]}};
     }
     std::sort(rank.begin(), rank.end());
     ranked.push_back(rank);

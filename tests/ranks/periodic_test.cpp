@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Packings that repeat, on several ranks: the network, and what flows through it, is that of one rank.
+#include "as_on_one_rank.hpp"
+#include "same_network.hpp"
+
+#include "pfv/dense_packing.hpp"
+#include "support/adversarial.hpp"
+#include "support/random_beds.hpp"
+
+#include <gtest/gtest.h>
+#include <string>
+
+namespace {
+
+constexpr std::array<Deal, 3> every_deal{Deal::by_place, Deal::at_random, Deal::all_to_one};
+
+pfv::Box periodic_box(bool x, bool y, bool z, const Eigen::Vector3d& tilt = Eigen::Vector3d::Zero()) {
+  pfv::Box box;
+  box.periodic = {x, y, z};
+  box.tilt = tilt;
+  return box;
+}
+
+/// Turned so that many grains stand at the sides, some beyond them.
+pfv::PackingArrays moved(pfv::PackingArrays packing, const Eigen::Vector3d& by) {
+  packing.positions.colwise() += by;
+  return packing;
+}
+
+}  // namespace
+
+TEST(PeriodicRanks, NetworkIsThatOfOneRankForADenseBed) {
+  const pfv::PackingArrays bed = numbered(pfv::dense_packing(500));
+  for (const Deal deal : every_deal) {
+    expect_same(bed, periodic_box(true, true, true), deal);
+    expect_same(bed, periodic_box(true, true, false), deal);
+    expect_same(bed, periodic_box(false, false, true), deal);
+  }
+}
+
+TEST(PeriodicRanks, NetworkIsThatOfOneRankWhereGrainsStandBeyondTheSides) {
+  const pfv::PackingArrays bed = numbered(pfv::dense_packing(300));
+  for (const double way : {0.013, 0.5, -3.71}) expect_same(moved(bed, {way, 0.0, -way}), periodic_box(true, false, true), Deal::by_place);
+}
+
+TEST(PeriodicRanks, NetworkIsThatOfOneRankInATiltedCell) {
+  const pfv::PackingArrays bed = numbered(pfv::dense_packing(300));
+  for (const Eigen::Vector3d& tilt : {Eigen::Vector3d(0.3, -0.2, 0.45), Eigen::Vector3d(0.5, 0.0, 0.0)})
+    for (const Deal deal : {Deal::by_place, Deal::at_random}) expect_same(bed, periodic_box(true, true, true, tilt), deal);
+}
+
+/// An image is a neighbour of the grain itself; ranks without a grain have nothing to do.
+TEST(PeriodicRanks, NetworkIsThatOfOneRankForFewGrains) {
+  for (const int count : {1, 2, 3, 8, 30})
+    for (const auto& box : {periodic_box(true, true, true), periodic_box(false, true, false)})
+      expect_same(numbered(support::random_packing(count, 0.05, 0.15, 4)), box, Deal::by_place);
+}
+
+TEST(PeriodicRanks, NetworkIsThatOfOneRankForUnlikeSpheresAndVoids) {
+  expect_same(numbered(support::random_packing(300, 0.015, 0.075, 2)), periodic_box(true, true, true), Deal::by_place);
+  expect_same(numbered(support::without_the_middle(pfv::dense_packing(700), 0.35)), periodic_box(true, true, true), Deal::by_place);
+  pfv::Box tall = periodic_box(true, true, false);
+  tall.upper[2] = 3.0;  // much water above the bed
+  expect_same(numbered(pfv::dense_packing(200)), tall, Deal::by_place);
+}
+
+TEST(PeriodicRanks, NetworkIsThatOfOneRankForALatticeWhosePoresMerge) {
+  for (const auto kind : {support::Lattice::sc, support::Lattice::fcc})
+    for (const auto& box : {periodic_box(true, true, true), periodic_box(true, false, false)})
+      expect_same(support::lattice(kind, 4), box, Deal::by_place);
+}
+
+namespace {
+
+pfv::Box driven_box(bool z = true) {
+  pfv::Box box = periodic_box(true, true, z);
+  box.pressure_gradient = {12.0, -7.0, z ? 3.0 : 0.0};
+  return box;
+}
+
+/// Level, too: a cell that is periodic all around has none of its own.
+pfv::Region well(double pressure) {
+  return {Eigen::Vector3d::Constant(0.5), Eigen::Vector3d::Constant(0.5), pfv::Boundary::pressure(pressure)};
+}
+
+pfv::PackingArrays moving_bed(int count) {
+  pfv::PackingArrays bed = numbered(pfv::dense_packing(count));
+  set_in_motion(bed, 3);
+  bed.velocities *= 1e-3;
+  return bed;
+}
+
+}  // namespace
+
+TEST(PeriodicRanks, FlowOfAGradientIsThatOfOneRank) {
+  pfv::Box box = driven_box();
+  box.regions = {well(5.0)};
+  for (const Deal deal : {Deal::by_place, Deal::at_random}) {
+    Case what{numbered(pfv::dense_packing(400)), box};
+    what.options.split_forces = true;
+    what.deal = deal;
+    expect_as_on_one_rank(what);
+  }
+  box.tilt = {0.3, -0.2, 0.45};
+  expect_as_on_one_rank({numbered(pfv::dense_packing(300)), box});
+}
+
+/// Without any pressure the level of the pressures is one of those that there are: forces do not depend on it.
+TEST(PeriodicRanks, ForcesAndPermeabilityOfACellThatIsPeriodicAllAroundAreThoseOfOneRank) {
+  for (const bool driven : {true, false}) {
+    const pfv::Box box = driven ? driven_box() : periodic_box(true, true, true);
+    const pfv::PackingArrays bed = numbered(pfv::dense_packing(300));
+    const std::vector<int> columns = own_columns(bed, Deal::by_place);
+    const pfv::PackingArrays part = part_of(bed, columns);
+    pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
+    const Eigen::Matrix3Xd expected = one.evaluate(bed.view()).total, found = all.evaluate(part.view()).total;
+    if (driven) {
+      EXPECT_LT(difference_of(found, expected, columns).rms, 1e-9);
+    } else {
+      EXPECT_TRUE(found.isZero(0.0));
+    }
+    expect_reports_agree(all.report(), one.report());
+  }
+}
+
+TEST(PeriodicRanks, PressuresAndFluxesAcrossPeriodsAlong) {
+  pfv::Box box = driven_box(false);
+  box[pfv::Face::zlo].boundary = pfv::Boundary::pressure(10.0);
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  expect_as_on_one_rank({moving_bed(400), box});
+  box[pfv::Face::zlo].boundary = pfv::Boundary::flux(1e-3);
+  expect_as_on_one_rank({moving_bed(400), box});
+}
+
+TEST(PeriodicRanks, MovingGrainsAndACellThatStretches) {
+  pfv::Box box = driven_box();
+  box.regions = {well(5.0)};
+  expect_as_on_one_rank({moving_bed(400), box});
+  box[pfv::Face::xhi].velocity = -2e-3;
+  box[pfv::Face::zlo].velocity = 1e-3;
+  expect_as_on_one_rank({moving_bed(300), box});
+  Case few{numbered(support::random_packing(6, 0.05, 0.15, 4)), box};
+  set_in_motion(few.packing, 5);
+  expect_as_on_one_rank(few);
+}
+
+TEST(PeriodicRanks, GrainsThatSettleInOpenWater) {
+  pfv::Box box = periodic_box(true, true, false);
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  pfv::Fluid fluid;
+  fluid.gravity = {0.0, 0.0, -9.81};
+  pfv::Options options = tight();
+  options.shear_viscous = true;
+  for (const int grains : {3, 60}) {
+    Case what{numbered(support::random_packing(grains, 0.02, 0.04, 3)), box, fluid, options};
+    set_in_motion(what.packing, 5);
+    expect_as_on_one_rank(what);
+  }
+}
+
+/// Grains drift through the sides, from network to network, are dealt anew, and the pressures of a compressible fluid go
+/// along; a state goes from ranks to one and back.
+TEST(PeriodicRanks, ACompressibleFluidWhoseGrainsCrossTheSides) {
+  const double dt = 1e-3;
+  pfv::Fluid fluid;
+  fluid.bulk_modulus = 1e3;
+  const pfv::Box box = driven_box();
+  for (const int count : {150, 7}) {
+    pfv::PackingArrays packing = numbered(count > 100 ? pfv::dense_packing(count) : support::random_packing(count, 0.05, 0.15, 4));
+    set_in_motion(packing, 3);
+    packing.velocities *= 0.3;
+    packing.velocities.colwise() += Eigen::Vector3d(40.0, 0.0, -25.0);
+    pfv::Flow one(box, fluid, tight()), all(box, fluid, tight(), world());
+    for (int step = 0; step < 9; ++step) {
+      if (step == 3 || step == 6) {  // to deal grains anew makes a network more
+        one.rebuild();
+        all.rebuild();
+      }
+      const std::vector<int> columns = own_columns(packing, every_deal[static_cast<std::size_t>(step) / 3]);
+      const pfv::Forces& expected = one.step(packing.view(), dt);
+      const pfv::Forces& found = all.step(part_of(packing, columns).view(), dt);
+      EXPECT_LT(difference_of(found.total, expected.total, columns).rms, 1e-9) << "step " << step;
+      EXPECT_NEAR(all.mean_pressure(), one.mean_pressure(), 1e-9 * one.pore_pressures().cwiseAbs().maxCoeff());
+      packing.positions += dt * packing.velocities;
+      for (double& x : packing.positions.reshaped()) x -= std::floor(x);
+    }
+    EXPECT_GE(one.retriangulations(), 4);
+    one.rebuild();
+    all.rebuild();
+    const std::vector<int> columns = own_columns(packing, Deal::by_place);
+    one.evaluate(packing.view(), dt);
+    all.evaluate(part_of(packing, columns).view(), dt);
+    const pfv::FlowState of_one = one.state(), of_all = all.state();
+    ASSERT_EQ(of_all.pore_pressures.size(), world()->own() == 0 ? of_one.pore_pressures.size() : 0);
+    double apart = 0.0, largest = 0.0;
+    for (std::size_t p = 0; p < of_all.pore_pressures.size(); ++p) {
+      apart = std::max(apart, std::abs(of_all.pore_pressures[p] - of_one.pore_pressures[p]));
+      largest = std::max(largest, std::abs(of_one.pore_pressures[p]));
+    }
+    EXPECT_LE(apart, 1e-8 * largest);
+    pfv::Flow crossed(box, fluid, tight(), world());
+    crossed.set_state(of_all);
+    const Eigen::Matrix3Xd going_on = all.step(part_of(packing, columns).view(), dt).total;
+    const double rms = std::sqrt(world()->sum(going_on.squaredNorm()) / count);
+    EXPECT_LT((crossed.step(part_of(packing, columns).view(), dt).total - going_on).norm(), 1e-8 * rms);
+  }
+}
+
+TEST(PeriodicRanks, StagedStepsAsOnOneRank) {
+  const pfv::PackingArrays packing = moving_bed(300);
+  const std::vector<int> columns = own_columns(packing, Deal::by_place);
+  const pfv::PackingArrays part = part_of(packing, columns);
+  const Eigen::VectorXd masses = 1e4 * packing.radii.array().cube(), own_masses = masses(columns);
+  const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, masses.size()), own_none = none(Eigen::all, columns);
+  const std::vector<pfv::Piston> pistons(6);
+  const pfv::GrainDynamics of_one{{masses.data(), masses.size()}, {none.data(), 3, none.cols()}, pistons};
+  const pfv::GrainDynamics of_all{{own_masses.data(), own_masses.size()}, {own_none.data(), 3, own_none.cols()}, pistons};
+  pfv::Flow one(driven_box(), {}, tight()), all(driven_box(), {}, tight(), world());
+  one.evaluate(packing.view(), 1e-3);
+  const double dt = 30.0 * one.time_step_limit(masses, pistons);
+  for (int step = 0; step < 2; ++step) {
+    const pfv::Forces& expected = one.advance(packing.view(), dt, pfv::Step::with(pfv::Coupling::staged, of_one));
+    const pfv::Forces& found = all.advance(part.view(), dt, pfv::Step::with(pfv::Coupling::staged, of_all));
+    EXPECT_EQ(all.stages(), one.stages());
+    EXPECT_GT(one.stages(), 5);
+    EXPECT_LT(difference_of(found.total, expected.total, columns).rms, 1e-8) << "step " << step;
+  }
+}
+
+/// PFV_RANK_PACKINGS: how many times four.
+TEST(PeriodicRanks, NetworkIsThatOfOneRankForWhatIsHardToTriangulate) {
+  const char* wanted = std::getenv("PFV_RANK_PACKINGS");
+  const int count = wanted ? std::atoi(wanted) / 4 : 40;
+  support::Random random(12);
+  for (int i = 0; i < count; ++i) {
+    SCOPED_TRACE("packing " + std::to_string(i));
+    const auto kind = static_cast<std::size_t>(i) % (support::adversarial::kinds.size() + 1);
+    const bool plain = kind == support::adversarial::kinds.size();
+    const pfv::PackingArrays packing =
+        numbered(plain ? support::random_packing(support::whole(random, 4, 100), 0.02, random(0.03, 0.09),
+                                                 static_cast<std::uint64_t>(i))
+                       : support::packing_of(support::adversarial::spheres_of(kind, random)));
+    const int axes = support::whole(random, 1, 7);
+    pfv::Box box = periodic_box(axes & 1, axes & 2, axes & 4);
+    if (axes == 7 && random() < 0.5) box.tilt = 0.5 * random.in_cube();
+    expect_same(packing, box, i % 2 ? Deal::at_random : Deal::by_place);
+    if (HasFailure()) return;
+  }
+}
