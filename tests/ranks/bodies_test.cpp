@@ -113,7 +113,7 @@ TEST(SharedBodies, InAPeriodicCell) {
   box.periodic = {true, true, false};
   box.pressure_gradient = {12.0, -7.0, 0.0};
   for (const Deal deal : {Deal::by_place, Deal::at_random})
-    expect_as_on_one_rank({conglomerates(250, 3, 1.2), box, {}, tight(), 0.0, deal});
+    expect_as_on_one_rank({conglomerates(150, 3, 1.2), box, {}, tight(), 0.0, deal});
   expect_as_on_one_rank({tetrahedra(3, 0.03).packing, box, {}, tight(), 0.0, Deal::at_random});
 }
 

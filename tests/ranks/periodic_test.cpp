@@ -30,7 +30,7 @@ pfv::PackingArrays moved(pfv::PackingArrays packing, const Eigen::Vector3d& by) 
 }  // namespace
 
 TEST(PeriodicRanks, NetworkIsThatOfOneRankForADenseBed) {
-  const pfv::PackingArrays bed = numbered(pfv::dense_packing(500));
+  const pfv::PackingArrays bed = numbered(pfv::dense_packing(120));
   for (const Deal deal : every_deal) {
     expect_same(bed, periodic_box(true, true, true), deal);
     expect_same(bed, periodic_box(true, true, false), deal);
@@ -39,12 +39,12 @@ TEST(PeriodicRanks, NetworkIsThatOfOneRankForADenseBed) {
 }
 
 TEST(PeriodicRanks, NetworkIsThatOfOneRankWhereGrainsStandBeyondTheSides) {
-  const pfv::PackingArrays bed = numbered(pfv::dense_packing(300));
+  const pfv::PackingArrays bed = numbered(pfv::dense_packing(200));
   for (const double way : {0.013, 0.5, -3.71}) expect_same(moved(bed, {way, 0.0, -way}), periodic_box(true, false, true), Deal::by_place);
 }
 
 TEST(PeriodicRanks, NetworkIsThatOfOneRankInATiltedCell) {
-  const pfv::PackingArrays bed = numbered(pfv::dense_packing(300));
+  const pfv::PackingArrays bed = numbered(pfv::dense_packing(200));
   for (const Eigen::Vector3d& tilt : {Eigen::Vector3d(0.3, -0.2, 0.45), Eigen::Vector3d(0.5, 0.0, 0.0)})
     for (const Deal deal : {Deal::by_place, Deal::at_random}) expect_same(bed, periodic_box(true, true, true, tilt), deal);
 }
@@ -57,8 +57,8 @@ TEST(PeriodicRanks, NetworkIsThatOfOneRankForFewGrains) {
 }
 
 TEST(PeriodicRanks, NetworkIsThatOfOneRankForUnlikeSpheresAndVoids) {
-  expect_same(numbered(support::random_packing(300, 0.015, 0.075, 2)), periodic_box(true, true, true), Deal::by_place);
-  expect_same(numbered(support::without_the_middle(pfv::dense_packing(700), 0.35)), periodic_box(true, true, true), Deal::by_place);
+  expect_same(numbered(support::random_packing(200, 0.015, 0.075, 2)), periodic_box(true, true, true), Deal::by_place);
+  expect_same(numbered(support::without_the_middle(pfv::dense_packing(400), 0.35)), periodic_box(true, true, true), Deal::by_place);
   pfv::Box tall = periodic_box(true, true, false);
   tall.upper[2] = 3.0;  // much water above the bed
   expect_same(numbered(pfv::dense_packing(200)), tall, Deal::by_place);
@@ -96,20 +96,20 @@ TEST(PeriodicRanks, FlowOfAGradientIsThatOfOneRank) {
   pfv::Box box = driven_box();
   box.regions = {well(5.0)};
   for (const Deal deal : {Deal::by_place, Deal::at_random}) {
-    Case what{numbered(pfv::dense_packing(400)), box};
+    Case what{numbered(pfv::dense_packing(120)), box};
     what.options.split_forces = true;
     what.deal = deal;
     expect_as_on_one_rank(what);
   }
   box.tilt = {0.3, -0.2, 0.45};
-  expect_as_on_one_rank({numbered(pfv::dense_packing(300)), box});
+  expect_as_on_one_rank({numbered(pfv::dense_packing(120)), box});
 }
 
 /// Without any pressure the level of the pressures is one of those that there are: forces do not depend on it.
 TEST(PeriodicRanks, ForcesAndPermeabilityOfACellThatIsPeriodicAllAroundAreThoseOfOneRank) {
   for (const bool driven : {true, false}) {
     const pfv::Box box = driven ? driven_box() : periodic_box(true, true, true);
-    const pfv::PackingArrays bed = numbered(pfv::dense_packing(300));
+    const pfv::PackingArrays bed = numbered(pfv::dense_packing(120));
     const std::vector<int> columns = own_columns(bed, Deal::by_place);
     const pfv::PackingArrays part = part_of(bed, columns);
     pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
@@ -127,18 +127,18 @@ TEST(PeriodicRanks, PressuresAndFluxesAcrossPeriodsAlong) {
   pfv::Box box = driven_box(false);
   box[pfv::Face::zlo].boundary = pfv::Boundary::pressure(10.0);
   box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
-  expect_as_on_one_rank({moving_bed(400), box});
+  expect_as_on_one_rank({moving_bed(120), box});
   box[pfv::Face::zlo].boundary = pfv::Boundary::flux(1e-3);
-  expect_as_on_one_rank({moving_bed(400), box});
+  expect_as_on_one_rank({moving_bed(120), box});
 }
 
 TEST(PeriodicRanks, MovingGrainsAndACellThatStretches) {
   pfv::Box box = driven_box();
   box.regions = {well(5.0)};
-  expect_as_on_one_rank({moving_bed(400), box});
+  expect_as_on_one_rank({moving_bed(120), box});
   box[pfv::Face::xhi].velocity = -2e-3;
   box[pfv::Face::zlo].velocity = 1e-3;
-  expect_as_on_one_rank({moving_bed(300), box});
+  expect_as_on_one_rank({moving_bed(120), box});
   Case few{numbered(support::random_packing(6, 0.05, 0.15, 4)), box};
   set_in_motion(few.packing, 5);
   expect_as_on_one_rank(few);
@@ -165,8 +165,8 @@ TEST(PeriodicRanks, ACompressibleFluidWhoseGrainsCrossTheSides) {
   pfv::Fluid fluid;
   fluid.bulk_modulus = 1e3;
   const pfv::Box box = driven_box();
-  for (const int count : {150, 7}) {
-    pfv::PackingArrays packing = numbered(count > 100 ? pfv::dense_packing(count) : support::random_packing(count, 0.05, 0.15, 4));
+  for (const int count : {80, 7}) {
+    pfv::PackingArrays packing = numbered(count > 50 ? pfv::dense_packing(count) : support::random_packing(count, 0.05, 0.15, 4));
     set_in_motion(packing, 3);
     packing.velocities *= 0.3;
     packing.velocities.colwise() += Eigen::Vector3d(40.0, 0.0, -25.0);
@@ -207,7 +207,7 @@ TEST(PeriodicRanks, ACompressibleFluidWhoseGrainsCrossTheSides) {
 }
 
 TEST(PeriodicRanks, StagedStepsAsOnOneRank) {
-  const pfv::PackingArrays packing = moving_bed(300);
+  const pfv::PackingArrays packing = moving_bed(120);
   const std::vector<int> columns = own_columns(packing, Deal::by_place);
   const pfv::PackingArrays part = part_of(packing, columns);
   const Eigen::VectorXd masses = 1e4 * packing.radii.array().cube(), own_masses = masses(columns);
@@ -230,7 +230,7 @@ TEST(PeriodicRanks, StagedStepsAsOnOneRank) {
 /// PFV_RANK_PACKINGS: how many times four.
 TEST(PeriodicRanks, NetworkIsThatOfOneRankForWhatIsHardToTriangulate) {
   const char* wanted = std::getenv("PFV_RANK_PACKINGS");
-  const int count = wanted ? std::atoi(wanted) / 4 : 40;
+  const int count = wanted ? std::atoi(wanted) / 4 : 24;
   support::Random random(12);
   for (int i = 0; i < count; ++i) {
     SCOPED_TRACE("packing " + std::to_string(i));
