@@ -26,6 +26,7 @@ std::string FixPfv::needs_one_rank() const {
   if (options.volume_rates == pfv::VolumeRates::geometric) return "volume_rates geometric";
   if (options.solver != pfv::SolverKind::amg && options.solver != pfv::SolverKind::automatic)
     return std::string("solver ") + name_of(options.solver);
+  if (cell_.any() && settings_.fluid.bulk_modulus) return "bulk_modulus beside periodic sides";
   return {};
 }
 

@@ -130,7 +130,7 @@ class OldPlaces {
   /// for `anyhow`: in a periodic cell a place may lie in an image.
   Answer at(const Eigen::Vector3d& absolute, bool anyhow = false) {
     constexpr double nowhere = std::numeric_limits<double>::infinity();
-    if (!old_) return {nowhere, 0.0};
+    if (!old_ || old_->network.cells() == 0) return {nowhere, 0.0};
     const Eigen::Vector3d place =
         (absolute - old_->network.origin).cwiseMax(0.0).cwiseMin(old_->vertices.edges);
     if (!anyhow && ((place.array() < lower_.array()).any() || (place.array() > upper_.array()).any())) return {nowhere, 0.0};
@@ -161,7 +161,7 @@ class OldPlaces {
   int cell_ = 0;
 };
 
-/// Asks all ranks for old pressures at the places of pores; those of which none knows are returned.
+/// Asks all ranks for old pressures at the places of pores; those that lie in no cell of any are returned.
 std::vector<int> fill_from_ranks(const std::vector<int>& pores, const BuiltNetwork& now, OldPlaces& places, bool anyhow,
                                  Eigen::VectorXd& values) {
   const Ranks& ranks = *now.share.ranks;
@@ -180,7 +180,7 @@ std::vector<int> fill_from_ranks(const std::vector<int>& pores, const BuiltNetwo
     for (const std::vector<Answer>& of_rank : answers)
       if (of_rank[i].found < best.found) best = of_rank[i];
     values[pores[i]] = best.pressure;
-    if (!std::isfinite(best.found)) left.push_back(pores[i]);
+    if (!(best.found == 0.0)) left.push_back(pores[i]);
   }
   return left;
 }
