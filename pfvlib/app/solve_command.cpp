@@ -259,8 +259,10 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
   const Packing packing = dealt.own();
   const double read_seconds = cpu_seconds() - start;
 
+  Options options = request.settings.options;
+  if (request.repeat == 0) options.amg_from = amg_from_for_one_solution;
   const std::unique_ptr<FlowModel> model =
-      make_flow(request.container, request.settings.fluid, request.settings.options, request.settings.grid(), ranks);
+      make_flow(request.container, request.settings.fluid, options, request.settings.grid(), ranks);
   FlowModel& flow = *model;
   try {
     flow.evaluate(packing, request.time_step);

@@ -110,7 +110,7 @@ SolveRequest problem_of(const TimeStepArguments& arguments) {
     throw InputError("--tangential-stiffness belongs to --contact-stiffness: give it too");
   SolveArguments problem = arguments.problem;
   problem.report = arguments.report;  // so that outputs that replace each other are refused
-  problem.vtk = arguments.matrices;
+  problem.culprits = arguments.matrices;
   SolveRequest request = request_of(problem);
   for (ContainerFace& face : request.container.faces) {
     face.velocity.setZero();

@@ -62,7 +62,9 @@ std::array<bool, 3> periodic_of(py::handle given) {
     if (axis == "," || axis == " ") continue;
     if (axis != "x" && axis != "y" && axis != "z")
       throw InputError("periodic: there is no axis '" + axis + "': give some of x, y, z");
-    periodic[static_cast<std::size_t>(axis[0] - 'x')] = true;
+    bool& own = periodic[static_cast<std::size_t>(axis[0] - 'x')];
+    if (own) throw InputError("periodic: axis " + axis + " occurs twice");
+    own = true;
   }
   return periodic;
 }

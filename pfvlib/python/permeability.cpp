@@ -46,6 +46,7 @@ double permeability(py::object positions, py::object radii, py::object box, py::
   const Grains grains({positions, radii, py::none(), py::none(), ids, py::none(), py::none()});
   Settings settings;
   settings.options.forces = false;
+  settings.options.amg_from = amg_from_for_one_solution;
   read_keywords("permeability()", keywords, all_keywords(), settings);
   settle(settings);
   check(settings);

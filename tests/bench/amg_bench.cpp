@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables of doc/solvers.md about the solver amg, in Markdown:  pfv_amg_bench tolerance|starts|sizes|flux [SPHERES...]
+// Tables of doc/solvers.md about the solver amg, in Markdown:  pfv_amg_bench tolerance|starts|sizes|auto|flux [SPHERES...]
 //   tolerance  error of forces and mass against the time of a solve, beside supernodal
 //   starts     iterations of a solve by the number of changes between the last solutions that it sets out from
 //   sizes      hierarchy and solves beside order, factor and solves of supernodal
+//   auto       what `solver auto` costs over the better of the two, by how many solves a network serves
 //   flux       a face with a pressure beside one with a flux, whose pores share an unknown
 // Dense packings, solid fraction 0.6, symmetry walls, open-throat law. CPU time of one thread.
 #include "pfv/dense_packing.hpp"
 #include "pfv/pfv.hpp"
 #include "solve/amg_solver.hpp"
+#include "step/automatic_solver.hpp"
 #include "support/motions.hpp"
 #include "support/packings.hpp"
 #include "support/stages.hpp"
@@ -266,25 +268,80 @@ Costs costs_of(const System& system, const std::vector<Eigen::VectorXd>& right_s
   return costs;
 }
 
+/// Of `spheres` that settle: supernodal's and amg's.
+struct Choice {
+  int unknowns = 0;
+  Costs factor, amg;
+};
+
+Choice choice_of(int spheres) {
+  const PackingArrays packing = dense_packing(spheres);
+  const System system(packing);
+  const Motions motions(packing);
+  std::vector<Eigen::VectorXd> right_sides;
+  for (int step = 0; step < 22; ++step) right_sides.push_back(system.right_side(motions.smooth(step)));
+  Options amg;
+  amg.solver = SolverKind::amg;
+  return {system.unknowns.count, costs_of(system, right_sides, {}), costs_of(system, right_sides, amg)};
+}
+
 void sizes_table(const std::vector<int>& sizes) {
   std::printf("| spheres, unknowns | supernodal: order + factor, s | MB held | solve, ms | amg: hierarchy, s | "
               "MB held | first solve: iterations, ms | later solve: iterations, ms | steps a network below which amg "
               "takes less |\n"
               "|--|--|--|--|--|--|--|--|--|\n");
   for (const int spheres : sizes) {
-    const PackingArrays packing = dense_packing(spheres);
-    const System system(packing);
-    const Motions motions(packing);
-    std::vector<Eigen::VectorXd> right_sides;
-    for (int step = 0; step < 22; ++step) right_sides.push_back(system.right_side(motions.smooth(step)));
-    Options amg;
-    amg.solver = SolverKind::amg;
-    const Costs ours = costs_of(system, right_sides, {}), its = costs_of(system, right_sides, amg);
+    const auto [unknowns, ours, its] = choice_of(spheres);
     const double steps = (ours.order + ours.factor - its.order - its.factor) / (its.warm - ours.warm);
     std::printf("| %d, %d | %.3g | %.0f | %.3g | %.3g | %.0f | %d, %.3g | %.1f, %.3g | %.0f |\n", spheres,
-                system.unknowns.count, 1e-3 * (ours.order + ours.factor), ours.memory, ours.warm,
+                unknowns, 1e-3 * (ours.order + ours.factor), ours.memory, ours.warm,
                 1e-3 * (its.order + its.factor), its.memory, its.iterations, its.cold, its.warm_iterations, its.warm,
                 steps);
+    std::fflush(stdout);
+  }
+}
+
+// ------------------------------------------------------------------------------------------ auto
+
+double cost_of(const Costs& costs, int solves) {
+  return costs.order + costs.factor + costs.cold + (solves - 1) * costs.warm;
+}
+
+/// Of a network by the choice that `auto` makes from solve to solve, ms.
+double cost_by_choice(const Choice& choice, int spheres, int solves, AutomaticSolver& automatic, Counts& counts) {
+  double cost = 0.0;
+  SolverKind serving = SolverKind::automatic;  // none yet
+  automatic.begin(spheres, counts);
+  for (int solve = 0; solve < solves; ++solve, ++counts.solve) {
+    const SolverKind now = automatic.now(counts);
+    const Costs& costs = now == SolverKind::amg ? choice.amg : choice.factor;
+    cost += now == serving ? costs.warm : costs.order + costs.factor + costs.cold;
+    serving = now;
+  }
+  return cost;
+}
+
+void auto_table(const std::vector<int>& sizes) {
+  constexpr int served[] = {1, 10, 100, 1000, 10000};
+  std::printf("| spheres | solved once |");
+  for (const int solves : served) std::printf(" %d |", solves);
+  std::printf("\n|--|--|--|--|--|--|--|\n");
+  for (const int spheres : sizes) {
+    const Choice choice = choice_of(spheres);
+    const auto better = [&](int solves) { return std::min(cost_of(choice.factor, solves), cost_of(choice.amg, solves)); };
+    Options options;
+    options.amg_from = amg_from_for_one_solution;
+    AutomaticSolver once(options, false);
+    Counts none;
+    std::printf("| %d | %.2f |", spheres, cost_by_choice(choice, spheres, 1, once, none) / better(1));
+    for (const int solves : served) {
+      AutomaticSolver automatic({}, false);
+      Counts counts;
+      const double first = cost_by_choice(choice, spheres, solves, automatic, counts);
+      const double later = cost_by_choice(choice, spheres, solves, automatic, counts);
+      std::printf(" %.2f, %.2f |", first / better(solves), later / better(solves));
+    }
+    std::printf("\n");
     std::fflush(stdout);
   }
 }
@@ -345,7 +402,8 @@ int main(int argc, char** argv) {
   if (table == "tolerance") return tolerance_table(or_else({5000, 20000})), 0;
   if (table == "starts") return starts_table(or_else({5000})), 0;
   if (table == "sizes") return sizes_table(or_else({5000, 20000})), 0;
+  if (table == "auto") return auto_table(or_else({1000, 5000, 20000})), 0;
   if (table == "flux") return flux_table(or_else({5000, 20000})), 0;
-  std::fprintf(stderr, "usage: pfv_amg_bench tolerance|starts|sizes|flux [SPHERES...]\n");
+  std::fprintf(stderr, "usage: pfv_amg_bench tolerance|starts|sizes|auto|flux [SPHERES...]\n");
   return 2;
 }

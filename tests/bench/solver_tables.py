@@ -3,7 +3,7 @@
 """Writes the tables of doc/solvers.md that stand between markers, each by its program:
 
     tests/bench/solver_tables.py [--build BUILD] [TABLE...]      (solvers, bound, precision, background, refreshed,
-                                                                 cells, sizes, tolerance, starts, flux)
+                                                                 cells, sizes, auto, tolerance, starts, flux)
 
 CPU times: compare the columns of a table, which one run has made.
 """
@@ -92,6 +92,8 @@ def bound(build):
     return "\n".join(lines)
 
 
+AUTO_SIZES = (1000, 2000, 5000, 10000, 20000, 49000, 50000, 100000, 200000)
+
 TABLES = {
     "solvers": solvers,
     "bound": bound,
@@ -100,6 +102,7 @@ TABLES = {
     "refreshed": lambda build: output(build / "bin/pfv_refresh_bench").partition("\n\n")[2],
     "cells": lambda build: output(build / "bin/pfv_refresh_bench", "cells"),
     "sizes": lambda build: output(build / "bin/pfv_amg_bench", "sizes", 5000, 20000, 100000),
+    "auto": lambda build: output(build / "bin/pfv_amg_bench", "auto", *AUTO_SIZES),
     "tolerance": lambda build: output(build / "bin/pfv_amg_bench", "tolerance"),
     "starts": lambda build: output(build / "bin/pfv_amg_bench", "starts"),
     "flux": lambda build: output(build / "bin/pfv_amg_bench", "flux"),

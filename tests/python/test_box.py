@@ -65,7 +65,7 @@ class Box(unittest.TestCase):
     def test_what_makes_no_sense_is_refused(self):
         box = pfv.Box(UNIT)
         for refused in (lambda: pfv.Box([[0, 1], [0, 0], [0, 1]]), lambda: pfv.Box([0, 1, 0, 1, 0, 1]),
-                        lambda: pfv.Box(UNIT, periodic="w"), lambda: pfv.Box(UNIT, tilt=(0.5, 0, 0)),
+                        lambda: pfv.Box(UNIT, periodic="w"), lambda: pfv.Box(UNIT, periodic="xyx"), lambda: pfv.Box(UNIT, tilt=(0.5, 0, 0)),
                         lambda: pfv.Box(UNIT, periodic="xyz", tilt=0.5), lambda: pfv.Box(UNIT, wall="smooth"),
                         lambda: box.face("top", pressure=1), lambda: box.face("zhi", pressure=1, flux=2),
                         lambda: box.face("zhi", wall="smooth"), lambda: box.face("zhi", sliding=(1, 2)),

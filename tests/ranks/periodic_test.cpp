@@ -250,11 +250,13 @@ TEST(PeriodicRanks, StagedStepsAsOnOneRank) {
   }
 }
 
-/// PFV_RANK_PACKINGS: how many times four.
+/// PFV_RANK_PACKINGS: how many times four. Where spheres nearly coincide images on their own may come out in other pores,
+/// which is refused (doc/scaling.md).
 TEST(PeriodicRanks, NetworkIsThatOfOneRankForWhatIsHardToTriangulate) {
   const char* wanted = std::getenv("PFV_RANK_PACKINGS");
   const int count = wanted ? std::atoi(wanted) / 4 : 24;
   support::Random random(12);
+  int unrepeated = 0;
   for (int i = 0; i < count; ++i) {
     SCOPED_TRACE("packing " + std::to_string(i));
     const auto kind = static_cast<std::size_t>(i) % (support::adversarial::kinds.size() + 1);
@@ -266,7 +268,9 @@ TEST(PeriodicRanks, NetworkIsThatOfOneRankForWhatIsHardToTriangulate) {
     const int axes = support::whole(random, 1, 7);
     pfv::Box box = periodic_box(axes & 1, axes & 2, axes & 4);
     if (axes == 7 && random() < 0.5) box.tilt = 0.5 * random.in_cube();
-    expect_same(packing, box, i % 2 ? Deal::at_random : Deal::by_place);
+    expect_same(packing, box, i % 2 ? Deal::at_random : Deal::by_place, &unrepeated);
     if (HasFailure()) return;
   }
+  if (world()->own() == 0) std::printf("refused on ranks alone: %d of %d\n", unrepeated, count);
+  EXPECT_LE(unrepeated, count / 50);
 }

@@ -102,6 +102,19 @@ TEST(AutomaticSolver, AFlowChangesOverOnItsNetwork) {
   EXPECT_EQ(flow.report().solver, "supernodal");  // the network before has served more than one solve
 }
 
+TEST(AutomaticSolver, WhereAmgComesToNoSolutionAFactorIsTriedUntilTheNextNetwork) {
+  pfv::AutomaticSolver automatic(open_from(pfv::amg_from_for_one_solution), false);
+  automatic.begin(20000, {});
+  EXPECT_EQ(automatic.now({}), SolverKind::amg);
+  EXPECT_TRUE(automatic.takes_factor_after_failure());
+  EXPECT_EQ(automatic.now({}), SolverKind::supernodal);
+  automatic.begin(20000, {});
+  EXPECT_EQ(automatic.now({}), SolverKind::amg);
+  automatic.begin(500'000'000, {});
+  EXPECT_FALSE(automatic.takes_factor_after_failure());  // does not fit
+  EXPECT_EQ(automatic.now({}), SolverKind::amg);
+}
+
 TEST(AutomaticSolver, AnImplicitStepHasAFactor) {
   pfv::PackingArrays packing = pfv::dense_packing(200);
   packing.velocities = Eigen::Matrix3Xd::Constant(3, 200, 1e-4);

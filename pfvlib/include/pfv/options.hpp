@@ -94,6 +94,9 @@ struct Names<StrainMeasure> {
        {StrainMeasure::mean, "mean"}}};
 };
 
+/// Where a packing is solved once and left: from here on amg takes less than a factor (doc/solvers.md, auto).
+inline constexpr std::int64_t amg_from_for_one_solution = 15000;
+
 struct Options {
   ConductanceLaw conductance = ConductanceLaw::open_throat;
   Partition partition = Partition::signed_angles;

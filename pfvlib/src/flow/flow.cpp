@@ -85,6 +85,20 @@ void Flow::Parts::begin_solution(const BuiltNetwork& built, double dt, bool comm
                               0.5 * schemes.of(coupling).direction() * dt);
 }
 
+/// By the chosen scheme. Where `auto` has taken amg and it comes to no solution, by a factor.
+void Flow::Parts::find_solution(const StepTask& task, double dt, bool commit) {
+  begin_solution(task.built, dt, commit);
+  try {
+    schemes.of(coupling).find(task, solution);
+  } catch (const SolverError&) {
+    if (!automatic.is_open() || options.solver != SolverKind::amg || !automatic.takes_factor_after_failure()) throw;
+    use(SolverKind::supernodal);
+    if (factor_pressures(task.built, problem(), dt, work)) schemes.forget_factor();
+    begin_solution(task.built, dt, commit);
+    schemes.of(coupling).find({task.built, problem(), task.packing, task.dynamics, work}, solution);
+  }
+}
+
 namespace {
 
 void forget_ghosts(Forces& forces, Eigen::Index own) {
@@ -107,9 +121,8 @@ const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
     if (automatic.is_open() && by == Coupling::implicit) use(SolverKind::supernodal);
     schemes.of(by).check(problem());
     BuiltNetwork& built = update_network(packing, dt, commit);
-    begin_solution(built, dt, commit);
     const Packing seen = built.halo ? built.halo->seen() : packing;
-    schemes.of(by).find({built, problem(), seen, dynamics, work}, solution);
+    find_solution({built, problem(), seen, dynamics, work}, dt, commit);
     if (options.forces) find_forces(built, problem(), seen, work, solution, forces);
     if (built.halo) forget_ghosts(forces, packing.size());
     solved = true;

@@ -78,6 +78,7 @@ struct Flow::Parts {
   void use(SolverKind solver);
   BuiltNetwork& update_network(const Packing& packing, double dt, bool commit);
   void begin_solution(const BuiltNetwork& built, double dt, bool commit);
+  void find_solution(const StepTask& task, double dt, bool commit);
   void choose_coupling(double dt, const Step& step);
 };
 

@@ -36,6 +36,12 @@ void AutomaticSolver::begin(Eigen::Index spheres, const Counts& counts) {
   had_network_ = true;
   before_ = solves_of(counts);
   spheres_ = spheres;
+  amg_failed_ = false;
+}
+
+bool AutomaticSolver::takes_factor_after_failure() {
+  amg_failed_ = factor_fits();
+  return amg_failed_;
 }
 
 /// Beside as much again while it is made.
@@ -45,7 +51,7 @@ bool AutomaticSolver::factor_fits() const {
 }
 
 SolverKind AutomaticSolver::now(const Counts& counts) const {
-  if (spheres_ < from_) return SolverKind::supernodal;
+  if (spheres_ < from_ || amg_failed_) return SolverKind::supernodal;
   if (!factor_fits()) return SolverKind::amg;
   const double enough = break_even(spheres_);
   return last_served_ > enough || served(counts) > enough ? SolverKind::supernodal : SolverKind::amg;

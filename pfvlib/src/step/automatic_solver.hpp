@@ -24,6 +24,8 @@ class AutomaticSolver {
   /// A new network of so many spheres; `counts`: of the work so far.
   void begin(Eigen::Index spheres, const Counts& counts);
   SolverKind now(const Counts& counts) const;
+  /// amg came to no solution on this network. Whether a factor is to be tried in its place.
+  bool takes_factor_after_failure();
   /// Why amg serves, where `solver`, that of the present network, is amg: a clause for the report; else empty.
   std::string reason(SolverKind solver) const;
 
@@ -37,6 +39,7 @@ class AutomaticSolver {
   double before_ = 0.0;          ///< solves of all networks when it began
   double last_served_ = 0.0;     ///< by the network before
   bool had_network_ = false;
+  bool amg_failed_ = false;      ///< on the present network
 };
 
 }  // namespace pfv

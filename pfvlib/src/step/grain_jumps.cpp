@@ -15,10 +15,12 @@ bool GrainJumps::any(const Packing& packing, const std::vector<int>& columns, co
   const bool moves = step > 0.0 && packing.velocities.cols() == packing.size();
   for (const int k : columns) {
     if (k >= packing.size()) continue;  // seen of another rank, which looks at its own
+    const double allowed = part * packing.radii[k];
     Eigen::Vector3d moved = packing.positions.col(k) - places_.col(k);
+    if (moved.squaredNorm() <= allowed * allowed) continue;  // nearly all, at each step
     moved -= lattice.displacement(lattice.nearest(moved));  // the host may have wrapped it
     const double explained = ways_[k] + (moves ? step * packing.velocities.col(k).norm() : 0.0);
-    if (moved.norm() > explained + part * packing.radii[k]) return true;
+    if (moved.norm() > explained + allowed) return true;
   }
   return false;
 }
