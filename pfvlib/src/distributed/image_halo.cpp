@@ -14,7 +14,6 @@ namespace pfv {
 namespace {
 
 constexpr double everywhere = std::numeric_limits<double>::infinity();
-constexpr Lattice::Shift here{0, 0, 0};
 
 /// Shifts with which a box meets another one.
 std::vector<Lattice::Shift> shifts_into(const Bounds& target, const Bounds& box, const Lattice& lattice) {
@@ -95,7 +94,7 @@ void ImageHalo::take_near_images(Reach reach) {
       if (!lattice_.periodic[axis] && known.lower[axis] <= 0.0) known.lower[axis] = -everywhere;
       if (!lattice_.periodic[axis] && known.upper[axis] >= lattice_.edges[axis]) known.upper[axis] = everywhere;
     }
-    if (shift != here) known = {known.lower.cwiseMax(wanted.lower), known.upper.cwiseMin(wanted.upper)};
+    if (shift != Lattice::here) known = {known.lower.cwiseMax(wanted.lower), known.upper.cwiseMin(wanted.upper)};
     if (!known.is_empty()) known_.push_back(known);
   }
 }
@@ -165,7 +164,7 @@ Eigen::Vector3d ImageHalo::window_of(const Halo::Query& ball) const {
   const double reach = std::sqrt(std::max(0.0, ball.power) + largest * largest) * (1.0 + 1e-9);
   double around = 0.0;  // no place is farther from a point of a tilted lattice
   for (int axis = 0; axis < 3; ++axis) {
-    Lattice::Shift one = here;
+    Lattice::Shift one = Lattice::here;
     one[axis] = 1;
     if (lattice_.periodic[axis]) around += 0.5 * lattice_.displacement(one).norm();
   }

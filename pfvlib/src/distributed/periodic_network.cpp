@@ -16,8 +16,6 @@ namespace pfv {
 
 namespace {
 
-constexpr Lattice::Shift here{0, 0, 0};
-
 /// Of the first halo's width the part within which own images around the cell are taken, beside the largest grains.
 constexpr double margin_in_widths = 0.7;
 
@@ -66,7 +64,7 @@ std::vector<char> cells_in_period(const ImageCells& found, const std::vector<int
   const auto whole = [](double x) { return x >= -slack && x <= 1.0 + slack ? 0.0 : std::floor(x); };
   std::vector<char> pores(first.size(), 0), cells(first.size());
   for (std::size_t c = 0; c < first.size(); ++c)
-    if (lattice.periods(found.cells.centres.places.col(static_cast<Eigen::Index>(c)), whole) == here) pores[first[c]] = 1;
+    if (lattice.periods(found.cells.centres.places.col(static_cast<Eigen::Index>(c)), whole) == Lattice::here) pores[first[c]] = 1;
   for (std::size_t c = 0; c < first.size(); ++c) cells[c] = pores[first[c]];
   return cells;
 }
@@ -93,7 +91,7 @@ ImageCells certain_image_cells(Halo& halo, ImageHalo& images, const Task& task) 
       std::vector<char> is_home, is_near;
       for (const GrainImage& image : images.images()) {
         is_near.push_back(image.is_near);
-        is_home.push_back(image.is_near && image.shift == here);
+        is_home.push_back(image.is_near && image.shift == Lattice::here);
       }
       const Spheres& spheres = found.images.spheres;
       found.cells = {};

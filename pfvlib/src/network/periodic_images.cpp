@@ -345,7 +345,7 @@ bool find_places(const PoreNetwork& all, const Spheres& spheres, double spacing,
 /// Of all images of a throat the one that starts at home in the smaller pore, or forwards in one pore.
 std::vector<FoldedThroat> fold_throats(const PoreNetwork& all, const Folding& folding) {
   std::vector<FoldedThroat> throats;
-  constexpr std::array<int, 3> here{0, 0, 0};
+  constexpr Lattice::Shift here = Lattice::here;
   for (int t = 0; t < all.throats(); ++t) {
     const auto [i, j] = all.throat_pores[t];
     if (!folding.needed[i] || !folding.needed[j]) continue;

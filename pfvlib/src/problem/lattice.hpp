@@ -11,6 +11,7 @@ namespace pfv {
 /// of the edges Lx, Ly, Lz holds each grain once, also where the cell is tilted.
 struct Lattice {
   using Shift = std::array<int, 3>;
+  static constexpr Shift here{0, 0, 0};
 
   Eigen::Vector3d edges = Eigen::Vector3d::Ones();  ///< m
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();   ///< xy, xz, yz, m
