@@ -183,27 +183,6 @@ TEST(Obstacles, DragOfManySpheresIsThatOfTheOne) {
   EXPECT_LT(most, 0.95);
 }
 
-/// A symmetric mesh is full of ties; the last digits of its places do not decide.
-TEST(Obstacles, SpheresDoNotDependOnOriginOrUnit) {
-  const auto expect_alike = [](const Triangles& mesh, double diameter) {
-    const pfv::Obstacle expected = pfv::obstacle_of_mesh(mesh, diameter, "body ");
-    for (const auto& [unit, away] : {std::pair(1.0, 0.1), std::pair(1e-3, 3.7)}) {
-      Triangles other = mesh;
-      for (pfv::Triangle& triangle : other) triangle = (unit * (triangle.array() + away)).matrix().eval();
-      const pfv::Obstacle found = pfv::obstacle_of_mesh(other, unit * diameter, "body ");
-      ASSERT_EQ(found.size(), expected.size()) << unit << " " << away;
-      const Eigen::Matrix3Xd strayed = found.centres / unit - (expected.centres.array() + away).matrix();
-      EXPECT_LT(strayed.cwiseAbs().maxCoeff(), 1e-6 * diameter) << unit << " " << away;
-      EXPECT_LT((found.radii / unit - expected.radii).cwiseAbs().maxCoeff(), 1e-6 * diameter) << unit << " " << away;
-    }
-  };
-  expect_alike(sphere_mesh(Vector(0.5, 0.5, 0.5), 0.2, 2), 0.08);
-  expect_alike(plate_mesh(0, 1, 0, 1, 0.3), 0.4);
-  expect_alike(block_mesh(Vector::Constant(-0.5), Vector::Constant(0.5)), 0.4);
-  expect_alike(block_mesh({-0.1, -0.1, -0.03}, {1.1, 1.1, 0.03}), 0.5);
-  expect_alike(cylinder_mesh(Vector::Zero(), 0.3, 1.0, 32), 0.3);
-}
-
 TEST(Obstacles, NothingFlowsThroughASheetOrAThinWall) {
   const double without = flow_past({}, 2);
   EXPECT_LT(flow_past(plate_mesh(0, 1, 0, 1, 0), 2) / without, 1e-15);             // ends at the walls
