@@ -175,12 +175,12 @@ TEST(Obstacles, DragOfManySpheresIsThatOfTheOne) {
       sum += ratio;
       ++count;
       EXPECT_LT(of_many.report.force_balance_error, 1e-13);
-      EXPECT_GT(of_many.limit / of_one.limit, 0.9);  // pockets between the spheres do not brake
+      EXPECT_GT(of_many.limit / of_one.limit, 0.98);  // pockets between the spheres do not brake
     }
   }
   std::printf("drag on many spheres over that on one: %.3f to %.3f, mean %.3f of %d\n", least, most, sum / count, count);
-  EXPECT_GT(least, 0.83);
-  EXPECT_LT(most, 0.95);
+  EXPECT_GT(least, 0.85);
+  EXPECT_LT(most, 0.94);
 }
 
 TEST(Obstacles, NothingFlowsThroughASheetOrAThinWall) {

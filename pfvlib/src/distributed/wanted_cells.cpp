@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "distributed/wanted_cells.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

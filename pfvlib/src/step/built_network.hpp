@@ -111,13 +111,6 @@ std::vector<double> strain_volumes(const PoreNetwork& network, const Throats& th
 /// whole volume (overlaps can make it negative).
 Eigen::VectorXd storage_volumes(const Throats& throats);
 
-/// How far a cell has gone, m, and what a macroscopic gradient has raised its pressure by, Pa, where the grains have
-/// carried it across the border of a periodic cell: the new network has another image of it at home.
-struct Wrapped {
-  double length, raised;
-};
-Wrapped wrapped_way(const BuiltNetwork& now, const Eigen::Vector3d& way);
-
 /// Pressures of a new network from those of the old one: a cell that survives keeps its own, others take
 /// what is found at their place; all are shifted so that the sum of V^f p is conserved.
 Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values,

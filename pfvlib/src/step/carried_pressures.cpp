@@ -22,9 +22,19 @@ std::vector<std::pair<CellName, int>> named_cells(const BuiltNetwork& built) {
   return names;
 }
 
-Eigen::Vector3d way_between(const BuiltNetwork& old, int before, const BuiltNetwork& now, int after) {
-  return now.network.origin + now.network.cell_centres.col(after) - old.network.origin -
-         old.network.cell_centres.col(before);
+/// How far a cell has gone, m, and what a macroscopic gradient has raised its pressure by, Pa, where the grains have
+/// carried it across the border of a periodic cell: the new network has another image of it at home.
+struct Wrapped {
+  double length, raised;
+};
+
+Wrapped wrapped_way(const BuiltNetwork& old, int before, const BuiltNetwork& now, int after) {
+  const Eigen::Vector3d way = now.network.origin + now.network.cell_centres.col(after) - old.network.origin -
+                              old.network.cell_centres.col(before);
+  const Lattice lattice = now.grains.spheres.lattice();
+  const Eigen::Vector3d periods = lattice.displacement(lattice.nearest(way));
+  const Eigen::Vector3d& gradient = now.container.pressure_gradient;
+  return {(way - periods).norm(), gradient.isZero(0.0) ? 0.0 : gradient.dot(periods)};
 }
 
 /// For each cell of `now` the cell of `old` with the same vertices, or -1; of several, which images may have, the one
@@ -37,7 +47,7 @@ std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& no
     while (next != before.end() && next->first < name) ++next;
     double least = std::numeric_limits<double>::infinity();
     for (auto same = next; same != before.end() && same->first == name; ++same) {
-      const double length = wrapped_way(now, way_between(old, same->second, now, cell)).length;
+      const double length = wrapped_way(old, same->second, now, cell).length;
       if (survivors[cell] >= 0 && !(length < least)) continue;
       least = length;
       survivors[cell] = same->second;
@@ -47,13 +57,6 @@ std::vector<int> surviving_cells(const BuiltNetwork& old, const BuiltNetwork& no
 }
 
 }  // namespace
-
-Wrapped wrapped_way(const BuiltNetwork& now, const Eigen::Vector3d& way) {
-  const Lattice lattice = now.grains.spheres.lattice();
-  const Eigen::Vector3d periods = lattice.displacement(lattice.nearest(way));
-  const Eigen::Vector3d& gradient = now.container.pressure_gradient;
-  return {(way - periods).norm(), gradient.isZero(0.0) ? 0.0 : gradient.dot(periods)};
-}
 
 Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values,
                                   const BuiltNetwork& now) {
@@ -67,7 +70,7 @@ Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd
   for (int c = 0; c < now.network.cells(); ++c)
     if (survivors[c] >= 0) {
       sum[now.network.cell_pore[c]] +=
-          old_values[old.network.cell_pore[survivors[c]]] + wrapped_way(now, way_between(old, survivors[c], now, c)).raised;
+          old_values[old.network.cell_pore[survivors[c]]] + wrapped_way(old, survivors[c], now, c).raised;
       ++count[now.network.cell_pore[c]];
     }
   int cell = 0;

@@ -16,22 +16,15 @@ namespace pfv {
 
 namespace {
 
-/// Where a cell of a name is, m: its dual vertex.
-struct NamedPlace {
-  CellName name;
-  std::array<double, 3> place;
-};
-
 struct NamedPressure {
-  NamedPlace cell;
+  CellName name;
   double pressure;
 };
 
-bool before(const NamedPressure& a, const NamedPressure& b) { return a.cell.name < b.cell.name; }
+bool before(const NamedPressure& a, const NamedPressure& b) { return a.name < b.name; }
 
-NamedPlace named_place(const BuiltNetwork& built, int cell) {
-  const Eigen::Vector3d place = built.network.origin + built.network.cell_centres.col(cell);
-  return {cell_name(built.network.cell_vertices[cell], built.vertices), {place[0], place[1], place[2]}};
+CellName name_of_cell(const BuiltNetwork& built, int cell) {
+  return cell_name(built.network.cell_vertices[cell], built.vertices);
 }
 
 /// The rank that is told of a cell of this name.
@@ -52,8 +45,8 @@ std::vector<NamedPressure> told_cells(const BuiltNetwork* old, const Eigen::Vect
   for (int c = 0; old && c < old->network.cells(); ++c) {
     const int pore = old->network.cell_pore[c];
     if (!old->share.own_pores[pore]) continue;
-    const NamedPressure cell{named_place(*old, c), values[pore]};
-    append(to[teller(cell.cell.name, ranks.count())], &cell, 1);
+    const NamedPressure cell{name_of_cell(*old, c), values[pore]};
+    append(to[teller(cell.name, ranks.count())], &cell, 1);
   }
   std::vector<NamedPressure> told;
   for (const Ranks::Bytes& bytes : ranks.hand_over(to))
@@ -78,21 +71,6 @@ std::vector<std::vector<Answer>> answers_of(const std::vector<Ranks::Bytes>& to,
   return answers;
 }
 
-/// Of cells of one name, which images may have, the one that has moved least; its pressure as it is there now.
-Answer pressure_of(const NamedPlace& asked, const std::vector<NamedPressure>& told, const BuiltNetwork& now) {
-  Answer answer{0.0, 0.0};
-  double least = std::numeric_limits<double>::infinity();
-  for (auto cell = std::lower_bound(told.begin(), told.end(), NamedPressure{asked, 0.0}, before);
-       cell != told.end() && cell->cell.name == asked.name; ++cell) {
-    const Wrapped way = wrapped_way(now, Eigen::Map<const Eigen::Vector3d>(asked.place.data()) -
-                                             Eigen::Map<const Eigen::Vector3d>(cell->cell.place.data()));
-    if (!(way.length < least)) continue;
-    least = way.length;
-    answer = {1.0, cell->pressure + way.raised};
-  }
-  return answer;
-}
-
 /// Of each own pore of `now` the sum of the pressures of its cells that were there before, and how many there are.
 void sum_of_survivors(const std::vector<NamedPressure>& told, const BuiltNetwork& now, Eigen::VectorXd& sum,
                       Eigen::VectorXi& count) {
@@ -101,12 +79,15 @@ void sum_of_survivors(const std::vector<NamedPressure>& told, const BuiltNetwork
   std::vector<int> asked(now.network.cells(), -1);
   for (int c = 0; c < now.network.cells(); ++c) {
     if (!now.share.own_pores[now.network.cell_pore[c]]) continue;
-    const NamedPlace cell = named_place(now, c);
-    asked[c] = teller(cell.name, ranks.count());
-    append(to[asked[c]], &cell, 1);
+    const CellName name = name_of_cell(now, c);
+    asked[c] = teller(name, ranks.count());
+    append(to[asked[c]], &name, 1);
   }
-  const auto answers =
-      answers_of<NamedPlace>(to, ranks, [&](const NamedPlace& cell) { return pressure_of(cell, told, now); });
+  const auto answers = answers_of<CellName>(to, ranks, [&](const CellName& name) -> Answer {
+    const auto found = std::lower_bound(told.begin(), told.end(), NamedPressure{name, 0.0}, before);
+    if (found == told.end() || found->name != name) return {0.0, 0.0};
+    return {1.0, found->pressure};
+  });
   std::vector<std::size_t> next(ranks.count(), 0);
   for (int c = 0; c < now.network.cells(); ++c) {
     if (asked[c] < 0) continue;
@@ -126,14 +107,13 @@ class OldPlaces {
       for (const Vertex v : cell) is_wall(v) ? reach(old_->vertices.wall(v)) : reach(old_->vertices.centres.col(v));
   }
 
-  /// How far outside a cell of a whole pore the place lies, m, and the pressure there; infinite where none is near, but
-  /// for `anyhow`: in a periodic cell a place may lie in an image.
-  Answer at(const Eigen::Vector3d& absolute, bool anyhow = false) {
+  /// How far outside a cell of a whole pore the place lies, m, and the pressure there; infinite where none is near.
+  Answer at(const Eigen::Vector3d& absolute) {
     constexpr double nowhere = std::numeric_limits<double>::infinity();
-    if (!old_ || old_->network.cells() == 0) return {nowhere, 0.0};
+    if (!old_) return {nowhere, 0.0};
     const Eigen::Vector3d place =
         (absolute - old_->network.origin).cwiseMax(0.0).cwiseMin(old_->vertices.edges);
-    if (!anyhow && ((place.array() < lower_.array()).any() || (place.array() > upper_.array()).any())) return {nowhere, 0.0};
+    if ((place.array() < lower_.array()).any() || (place.array() > upper_.array()).any()) return {nowhere, 0.0};
     cell_ = locate(old_->network, old_->vertices, place, cell_);
     const int pore = old_->network.cell_pore[cell_];
     if (!old_->share.whole_pores[pore]) return {nowhere, 0.0};
@@ -161,43 +141,31 @@ class OldPlaces {
   int cell_ = 0;
 };
 
-/// Asks all ranks for old pressures at the places of pores; those that lie in no cell of any are returned.
-std::vector<int> fill_from_ranks(const std::vector<int>& pores, const BuiltNetwork& now, OldPlaces& places, bool anyhow,
-                                 Eigen::VectorXd& values) {
-  const Ranks& ranks = *now.share.ranks;
-  Ranks::Bytes questions;
-  for (const int p : pores) {
-    const Eigen::Vector3d place = now.network.origin + now.network.pore_centres.col(p);
-    append(questions, place.data(), 3);
-  }
-  const auto answers = answers_of<std::array<double, 3>>(
-      std::vector<Ranks::Bytes>(ranks.count(), questions), ranks, [&](const std::array<double, 3>& place) {
-        return places.at(Eigen::Map<const Eigen::Vector3d>(place.data()), anyhow);
-      });
-  std::vector<int> left;
-  for (std::size_t i = 0; i < pores.size(); ++i) {
-    Answer best{std::numeric_limits<double>::infinity(), 0.0};
-    for (const std::vector<Answer>& of_rank : answers)
-      if (of_rank[i].found < best.found) best = of_rank[i];
-    values[pores[i]] = best.pressure;
-    if (!(best.found == 0.0)) left.push_back(pores[i]);
-  }
-  return left;
-}
-
 /// Own pores of which nothing was there before take what is found at their places, here or elsewhere.
 void fill_from_places(const BuiltNetwork* old, const Eigen::VectorXd& old_values, const BuiltNetwork& now,
                       const Eigen::VectorXi& count, Eigen::VectorXd& values) {
+  const Ranks& ranks = *now.share.ranks;
   OldPlaces places(old, old_values);
   std::vector<int> elsewhere;
+  Ranks::Bytes questions;
   for (int p = 0; p < now.network.pores(); ++p) {
     if (!now.share.own_pores[p] || count[p] > 0) continue;
-    const Answer own = places.at(now.network.origin + now.network.pore_centres.col(p));
+    const Eigen::Vector3d place = now.network.origin + now.network.pore_centres.col(p);
+    const Answer own = places.at(place);
     values[p] = own.pressure;
-    if (own.found != 0.0) elsewhere.push_back(p);
+    if (own.found == 0.0) continue;
+    elsewhere.push_back(p);
+    append(questions, place.data(), 3);
   }
-  const std::vector<int> left = fill_from_ranks(elsewhere, now, places, false, values);
-  if (now.container.any_periodic()) fill_from_ranks(left, now, places, true, values);
+  const auto answers = answers_of<std::array<double, 3>>(
+      std::vector<Ranks::Bytes>(ranks.count(), questions), ranks,
+      [&](const std::array<double, 3>& place) { return places.at(Eigen::Map<const Eigen::Vector3d>(place.data())); });
+  for (std::size_t i = 0; i < elsewhere.size(); ++i) {
+    Answer best{std::numeric_limits<double>::infinity(), 0.0};
+    for (const std::vector<Answer>& of_rank : answers)
+      if (of_rank[i].found < best.found) best = of_rank[i];
+    values[elsewhere[i]] = best.pressure;
+  }
 }
 
 /// A vertex in the order of the curve, images of one sphere by their places.
