@@ -324,7 +324,7 @@ void FixPfv::setup(int) {
     warn_of_empty_box();
     for (const std::string& warning : warnings_of_unseen_walls(beside, container_, grains_.grains(), ranks_))
       warn_of(warning);
-    warn_of_surfaces_at_rest();
+    warn_of_obstacles_and_surfaces();
     warn_of_likely_slips();
     flow_.prepare(container_, settings_, grains_.packing(), flow_step(), ranks_.library());
     check_servos();

@@ -105,7 +105,7 @@ class FixPfv : public Fix {
   void remember_state();
   void warn_of_empty_box() const;
   void warn_of(const std::string& problem) const;
-  void warn_of_surfaces_at_rest() const;
+  void warn_of_obstacles_and_surfaces() const;
   void warn_of_likely_slips() const;
   void warn_of_gaps(const std::vector<double>& mesh_areas) const;
   void say_what_holds_the_fluid();
@@ -144,7 +144,7 @@ class FixPfv : public Fix {
   bool needs_forces() const;
   double flow_step() const;  ///< s, between two flow steps of a run
   void call_flow(double dt, bool commit);
-  pfv::TimeStepCheck look_at_time_step();
+  pfv::TimeStepCheck look_at_time_step(const std::string& reason = "");
   void check_time_step();
   void watch_time_step();
   void check_servos();
@@ -183,6 +183,7 @@ class FixPfv : public Fix {
     bool citation = false;
     bool time_step = false;  // warned of, in this run
     std::int64_t network = 0;  // retriangulations when the time step was looked at
+    std::int64_t grain_network = 0;  // and when the stiffest grain was
   } said_;
 };
 

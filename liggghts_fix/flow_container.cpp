@@ -193,8 +193,9 @@ void FixPfv::warn_of(const std::string& problem) const {
   error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + units().relabelled(problem)).c_str());
 }
 
-/// Conveyors whose motion the fluid cannot have. Where the flow is.
-void FixPfv::warn_of_surfaces_at_rest() const {
+/// Grains that stick in obstacles, conveyors whose motion the fluid cannot have. Where the flow is.
+void FixPfv::warn_of_obstacles_and_surfaces() const {
+  for (const std::string& line : obstacles_.stuck_grains(grains_.grains(), ranks_)) warn_of(line);
   for (const std::string& line : faces_.surfaces_at_rest()) warn_of(line);
   for (const std::string& line : obstacles_.surfaces_at_rest()) warn_of(line);
 }

@@ -222,6 +222,17 @@ std::vector<std::string> PfvObstacles::news() {
   return lines;
 }
 
+std::vector<std::string> PfvObstacles::stuck_grains(const pfv::Packing& grains, const PfvFlowRanks& ranks) const {
+  std::vector<std::string> lines;
+  for (const Held& held : held_) {
+    const std::vector<std::int64_t> own = pfv::spheres_stuck_in(grains, held.obstacle, held.motion.placement);
+    const std::vector<double> all = ranks.everywhere(std::vector<double>(own.begin(), own.end()));
+    const std::string warning = pfv::warning_of_stuck(std::vector<std::int64_t>(all.begin(), all.end()));
+    if (!warning.empty()) lines.push_back(named(held.id) + "is not clear of grains: " + warning);
+  }
+  return lines;
+}
+
 std::vector<std::string> PfvObstacles::surfaces_at_rest() const {
   std::vector<std::string> lines;
   for (const Held& held : held_)

@@ -57,6 +57,8 @@ class PfvObstacles : protected Pointers {
 
   /// How they move, kept from run to run.
   PfvMeshMotions& motions() { return motions_; }
+  /// A line for each that grains of these stick in. Where the flow is.
+  std::vector<std::string> stuck_grains(const pfv::Packing& grains, const PfvFlowRanks& ranks) const;
   /// A line for each whose surface moves while it stays, which the fluid does not see.
   std::vector<std::string> surfaces_at_rest() const;
 

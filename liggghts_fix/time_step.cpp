@@ -35,11 +35,12 @@ void FixPfv::call_flow(double dt, bool commit) {
 }
 
 /// Where the time step stands now; its warnings, once a run. Where the flow is.
-pfv::TimeStepCheck FixPfv::look_at_time_step() {
+/// `reason`: what is known of it, for these.
+pfv::TimeStepCheck FixPfv::look_at_time_step(const std::string& reason) {
   const pfv::TimeStepCheck check = pfv::check_time_step(*flow_, grains_.packing(), grains_.masses(),
                                                         faces_.pistons(), flow_step(), bodies_.rigid());
   said_.network = flow_->retriangulations();
-  const char* remedy = ", `coupling staged` or `coupling implicit`";
+  const std::string remedy = ", `coupling staged` or `coupling implicit`" + reason;
   const std::vector<std::string> warnings =
       pfv::warnings_of(check, settings_.steps.couple_every, settings_.steps.safety, remedy);
   if (!said_.time_step)
@@ -56,15 +57,19 @@ void FixPfv::check_time_step() {
   print("Fix pfv (id " + std::string(id) + "): " + units().relabelled(look_at_time_step().text()) + "\n");
 }
 
-/// Within a run: a packing that grows denser, or pores that close, bring the limit down. A look costs about as
-/// much as a network. Where the flow is.
+/// Within a run: a packing that grows denser, or pores that close, bring the limit down. What one grain says of it is
+/// asked of each network; where that warns, and now and then, the limit is found anew, at the cost of about a network.
+/// Where the flow is.
 void FixPfv::watch_time_step() {
   constexpr std::int64_t networks_between = 20;
   if (!settings_.steps.time_step_check || said_.time_step || settings_.model != pfv::Model::pores ||
-      flow_->coupling() != pfv::Coupling::explicit_step ||
-      flow_->retriangulations() - said_.network < networks_between)
+      flow_->coupling() != pfv::Coupling::explicit_step || flow_->retriangulations() == said_.grain_network)
     return;
-  look_at_time_step();
+  said_.grain_network = flow_->retriangulations();
+  const pfv::StiffestGrain grain = flow_->stiffest_grain(grains_.masses());
+  const bool is_above = flow_step() > settings_.steps.safety * grain.limit;
+  if (is_above || flow_->retriangulations() - said_.network >= networks_between)
+    look_at_time_step(is_above ? "; it is the pores around grain " + std::to_string(grain.id) + " that ask for it" : "");
 }
 
 }  // namespace LAMMPS_NS

@@ -241,7 +241,7 @@ WithObstacles read_spheres(const SolveRequest& request, const Ranks* ranks, std:
     if (ranks) refuse_on_ranks(request);
     read.spheres = packing_of(request, warnings);
     read.grains = read.spheres.ids.size();
-    read.obstacles = add_obstacles(request, read.spheres);
+    read.obstacles = add_obstacles(request, read.spheres, warnings);
   };
   if (ranks) ranks->together(read_file);
   else read_file();

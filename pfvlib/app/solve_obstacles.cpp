@@ -26,14 +26,17 @@ void drop_outside(PackingArrays& packing, Eigen::Index first, const Container& c
 
 }  // namespace
 
-std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, PackingArrays& packing) {
+std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, PackingArrays& packing, std::ostream& warnings) {
   std::vector<StandingObstacle> all;
   const double usual = packing.radii.size() > 0 ? 2.0 * usual_obstacle_diameter * packing.radii.mean() : 0.0;
+  const Eigen::Index grains = packing.ids.size();
   const std::int64_t last_id = packing.ids.size() > 0 ? packing.ids.maxCoeff() : 0;
   for (const std::string& file : request.obstacles) {
     const double diameter = request.obstacle_diameter > 0.0 ? request.obstacle_diameter : usual;
     const Eigen::Index first = packing.ids.size();
     Obstacle obstacle = obstacle_of_mesh(read_stl(file), diameter, file + ": it ");
+    const std::string warning = warning_of_stuck(spheres_stuck_in(first_spheres(packing.view(), grains), obstacle, {}));
+    if (!warning.empty()) warnings << "pfv: warning: " << file << ": " << warning << '\n';
     add_obstacle(packing, obstacle, {}, last_id + 1 + first, request.container);
     drop_outside(packing, first, request.container);
     all.push_back({std::move(obstacle), first, packing.ids.size() - first});

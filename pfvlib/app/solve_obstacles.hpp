@@ -7,6 +7,7 @@
 #include "pfv/obstacle.hpp"
 #include "pfv/report.hpp"
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ struct StandingObstacle {
   Eigen::Index first, count;
 };
 
-/// Puts the spheres of each obstacle behind the grains, as far as they are in the container.
-std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, PackingArrays& packing);
+/// Puts the spheres of each obstacle behind the grains, as far as they are in the container; warns of grains that stick in
+/// it.
+std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, PackingArrays& packing, std::ostream& warnings);
 
 /// `rows`: those of the packing that this rank has read, from `first_row` on, and what acts on them. Collective on ranks.
 std::vector<ObstacleResult> results_of(const std::vector<StandingObstacle>& obstacles, const SolveRequest& request,

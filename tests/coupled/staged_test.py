@@ -220,6 +220,16 @@ class Staged(SettledTest):
         self.assertEqual(len(warned), 1, warned)
         self.assertIn("times the limit of the explicit coupling", warned[0])
 
+    def test_a_pore_that_closes_is_warned_of_with_its_network(self):
+        """Grains that swell by 1 % a step: throats close within some steps, long before 20 networks."""
+        swelling = ("compute rad all property/atom radius\nvariable grown atom 2.02*c_rad\n"
+                    "fix swell all adapt 1 atom diameter v_grown\nrun 12\n")
+        words = self.at_ratio(0.1, "retriangulate largest 1e-5")
+        said = self.liggghts(self.script(words, swelling))
+        warned = [line for line in said.splitlines() if "WARNING: Fix pfv" in line]
+        self.assertEqual(len(warned), 1, warned)
+        self.assertRegex(warned[0], r"times the limit of the explicit coupling.*pores around grain \d+ ")
+
     def test_safety_must_be_positive(self):
         self.refuse("fix_modify flow safety 0\n", "safety")
 

@@ -292,6 +292,9 @@ TEST(SharedFlow, TheLimitOfTheTimeStep) {
       const double expected = one.time_step_limit(masses, pistons);
       const double found = all.time_step_limit(masses(columns), pistons);
       EXPECT_NEAR(found / expected, 1.0, 0.005);  // both are searched for from places of their own
+      const pfv::StiffestGrain of_one = one.stiffest_grain(masses), of_all = all.stiffest_grain(masses(columns));
+      EXPECT_NEAR(of_all.limit / of_one.limit, 1.0, 1e-9);
+      EXPECT_EQ(of_all.id, of_one.id);
       const std::int64_t solves = all.report().counts.limit_solve;
       EXPECT_EQ(all.time_step_limit(masses(columns), pistons), found);
       EXPECT_EQ(all.report().counts.limit_solve, solves);

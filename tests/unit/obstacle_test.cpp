@@ -183,6 +183,66 @@ TEST(Obstacles, DragOfManySpheresIsThatOfTheOne) {
   EXPECT_LT(most, 0.94);
 }
 
+/// A symmetric mesh is full of ties; the last digits of its places do not decide.
+TEST(Obstacles, SpheresDoNotDependOnOriginOrUnit) {
+  const auto expect_alike = [](const Triangles& mesh, double diameter) {
+    const pfv::Obstacle expected = pfv::obstacle_of_mesh(mesh, diameter, "body ");
+    for (const auto& [unit, away] : {std::pair(1.0, 0.1), std::pair(1e-3, 3.7)}) {
+      Triangles other = mesh;
+      for (pfv::Triangle& triangle : other) triangle = (unit * (triangle.array() + away)).matrix().eval();
+      const pfv::Obstacle found = pfv::obstacle_of_mesh(other, unit * diameter, "body ");
+      ASSERT_EQ(found.size(), expected.size()) << unit << " " << away;
+      const Eigen::Matrix3Xd strayed = found.centres / unit - (expected.centres.array() + away).matrix();
+      EXPECT_LT(strayed.cwiseAbs().maxCoeff(), 1e-6 * diameter) << unit << " " << away;
+      EXPECT_LT((found.radii / unit - expected.radii).cwiseAbs().maxCoeff(), 1e-6 * diameter) << unit << " " << away;
+    }
+  };
+  expect_alike(sphere_mesh(Vector(0.5, 0.5, 0.5), 0.2, 2), 0.08);
+  expect_alike(plate_mesh(0, 1, 0, 1, 0.3), 0.4);
+  expect_alike(block_mesh(Vector::Constant(-0.5), Vector::Constant(0.5)), 0.4);
+  expect_alike(block_mesh({-0.1, -0.1, -0.03}, {1.1, 1.1, 0.03}), 0.5);
+  expect_alike(cylinder_mesh(Vector::Zero(), 0.3, 1.0, 32), 0.3);
+}
+
+/// Limit of the explicit coupling of the grains of a cube around an obstacle that was put over them.
+double limit_among_grains(const pfv::Obstacle& obstacle, pfv::PackingArrays packing) {
+  pfv::Box box;
+  box.upper = Vector::Ones();
+  box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
+  const Eigen::Index grains = packing.radii.size();
+  pfv::add_obstacle(packing, obstacle, {}, 1000, box);
+  pfv::Fluid fluid;
+  fluid.viscosity = 1.0;
+  pfv::Options options;
+  options.outside = pfv::OutsideGrains::leave_out;
+  pfv::Flow flow(box, fluid, options);
+  flow.evaluate(packing.view());
+  Eigen::VectorXd masses = Eigen::VectorXd::Constant(packing.radii.size(), std::numeric_limits<double>::infinity());
+  masses.head(grains) = 1e3 * packing.radii.head(grains).array().cube();
+  return flow.time_step_limit(masses, {}, {pfv::held_body(obstacle, {})});
+}
+
+/// Pores that grains within its body and deep overlaps all but close would ask for steps of 2e-9 to 1.4e-5 s.
+TEST(Obstacles, GrainsThatStickInOneAreFoundAndDoNotShutFluidIn) {
+  for (int sample = 0; sample < 6; ++sample) {
+    const Vector shift = 0.013 * Vector(sample, 2 * sample % 7, 3 * sample % 11);
+    const Triangles plate = block_mesh(Vector(0.2, -0.1, 0.4) + shift, Vector(0.6, 1.1, 0.52) + shift);
+    const pfv::Obstacle obstacle = pfv::obstacle_of_mesh(plate, 0.06, "plate ");
+    const pfv::PackingArrays packing = pfv::dense_packing(300, 0.6, 0.2, 1 + sample);
+    const std::vector<std::int64_t> stuck = pfv::spheres_stuck_in(packing.view(), obstacle, {});
+    std::vector<std::int64_t> expected;
+    for (Eigen::Index k = 0; k < packing.radii.size(); ++k) {
+      const auto away = (obstacle.centres.colwise() - packing.positions.col(k)).colwise().norm().transpose();
+      if ((away.array() < obstacle.radii.array()).any()) expected.push_back(packing.ids[k]);
+    }
+    EXPECT_GT(expected.size(), 5u);
+    EXPECT_EQ(stuck, expected);
+    EXPECT_EQ(pfv::warning_of_stuck(stuck).find(std::to_string(stuck.size()) + " grains stick in it"), 0u);
+    EXPECT_GT(limit_among_grains(obstacle, packing), 1e-4) << sample;
+  }
+  EXPECT_EQ(pfv::warning_of_stuck({}), "");
+}
+
 TEST(Obstacles, NothingFlowsThroughASheetOrAThinWall) {
   const double without = flow_past({}, 2);
   EXPECT_LT(flow_past(plate_mesh(0, 1, 0, 1, 0), 2) / without, 1e-15);             // ends at the walls

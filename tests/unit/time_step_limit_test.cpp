@@ -13,6 +13,8 @@ namespace {
 
 using namespace support;
 
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
 pfv::Options with_torques() {
   pfv::Options options;
   options.torques = true;
@@ -79,6 +81,48 @@ TEST(TimeStepLimit, IsThatOfTheOperatorsLargestEigenvalueFromBelow) {
   const double limit = sample.flow.time_step_limit(sample.masses);
   EXPECT_LT(limit * largest / 2.0, 1.0);
   EXPECT_GT(limit * largest / 2.0, 0.9);
+}
+
+TEST(StiffestGrain, BoundsTheLimitFromAboveInADensePacking) {
+  Sample sample;
+  sample.at_rest();
+  const double limit = sample.flow.time_step_limit(sample.masses);
+  const pfv::StiffestGrain stiffest = sample.flow.stiffest_grain(sample.masses);
+  EXPECT_GE(stiffest.limit, limit);
+  EXPECT_LT(stiffest.limit, 30.0 * limit);
+  EXPECT_NEAR(sample.flow.stiffest_grain(4.0 * sample.masses).limit / stiffest.limit, 4.0, 1e-12);
+  EXPECT_EQ(sample.flow.stiffest_grain(Eigen::VectorXd::Constant(sample.masses.size(), infinite)).limit, infinite);
+  expect_line(refusal([&] { sample.flow.stiffest_grain(Eigen::VectorXd::Ones(3)); }), "3 masses for 100 spheres");
+}
+
+// Three spheres that overlap, held, and a free one that shuts the hollow between them as it comes down.
+TEST(StiffestGrain, IsTheLimitItselfWhereAPoreNearlyCloses) {
+  const double side = 0.3, radius = 0.2;
+  Eigen::VectorXd masses = Eigen::VectorXd::Constant(4, infinite);
+  masses[3] = 1.0;
+  double before = infinite, above = infinite;
+  for (const double height : {0.37, 0.355, 0.34, 0.335}) {
+    pfv::PackingArrays packing;
+    packing.ids = pfv::Packing::Ids::LinSpaced(4, 11, 14);
+    packing.radii = Eigen::VectorXd::Constant(4, radius);
+    packing.positions.resize(3, 4);
+    const double across = side / std::sqrt(3.0);
+    packing.positions.row(0) << 0.5 + across, 0.5 - 0.5 * across, 0.5 - 0.5 * across, 0.5;
+    packing.positions.row(1) << 0.5, 0.5 + 0.5 * side, 0.5 - 0.5 * side, 0.5;
+    packing.positions.row(2) << 0.3, 0.3, 0.3, 0.3 + height;
+    packing.velocities = Eigen::Matrix3Xd::Zero(3, 4);
+    packing.velocities(2, 3) = -1.0;
+    pfv::Flow flow(pressure_box(pfv::Face::zlo, 0.0, pfv::Face::zhi, 0.0, pfv::Wall::symmetry), viscosity_one());
+    flow.evaluate(packing.view(), 1.0);
+    const double limit = flow.time_step_limit(masses);
+    const pfv::StiffestGrain stiffest = flow.stiffest_grain(masses);
+    EXPECT_EQ(stiffest.id, 14);
+    EXPECT_GE(stiffest.limit, limit);
+    EXPECT_LT(limit, 0.6 * before);
+    before = limit;
+    above = stiffest.limit / limit;
+  }
+  EXPECT_LT(above, 1.1);
 }
 
 TEST(TimeStepLimit, GoesWithTheMassesAndWithOneOverTheViscosity) {

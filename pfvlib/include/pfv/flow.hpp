@@ -102,6 +102,7 @@ class Flow final : public FlowModel {
   /// limit of this network is known.
   double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons = {},
                          const std::vector<RigidBody>& bodies = {}) override;
+  StiffestGrain stiffest_grain(const Eigen::VectorXd& masses) override;
   /// V^k of these spheres (columns of the packing): the fluid answers the velocity v of sphere k alone,
   /// all others, faces and imposed pressures held, with the force -V^k v on it, N s/m (thesis
   /// eqs. 4.10-4.16); 0 for hidden and left-out spheres. Cost: three solves a sphere, on the kept factor.

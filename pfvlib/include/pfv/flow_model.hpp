@@ -39,6 +39,12 @@ struct FlowState {
   double fluid_at_start = 0.0, fluid_came_in = 0.0;  ///< m³, for the fluid's balance; 0: it begins anew
 };
 
+/// What one grain alone says of the limit of explicit steps.
+struct StiffestGrain {
+  double limit = std::numeric_limits<double>::infinity();  ///< s
+  std::int64_t id = -1;  ///< the grain's; -1 where none resists
+};
+
 /// A face that moves freely along its guide (of a box: its axis): a piston. By default its velocity is prescribed.
 struct Piston {
   double mass = std::numeric_limits<double>::infinity();  ///< kg, > 0; infinite: prescribed velocity
@@ -167,6 +173,11 @@ class FlowModel {
   /// resists.
   virtual double time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons = {},
                                  const std::vector<RigidBody>& bodies = {}) = 0;
+  /// A bound from above of that limit: the largest that the pressure of one pore and the motion of one free grain give.
+  /// Where a pore that nearly closes makes the limit it is within some per cent of it, else several times as much. Cost:
+  /// two passes over the network. For a model that has no such bound infinite. Throws InputError where the number
+  /// of masses is not that of the packing's spheres.
+  virtual StiffestGrain stiffest_grain(const Eigen::VectorXd& /*masses*/) { return {}; }
   virtual std::int64_t retriangulations() const = 0;  ///< rebuilds after the first
   virtual std::vector<int> hidden() const = 0;  ///< columns of the packing that the fluid cannot see
   /// Hidden spheres plus those left out because their centre is outside the container.

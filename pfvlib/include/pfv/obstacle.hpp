@@ -75,6 +75,12 @@ void add_obstacle(PackingArrays& packing, const Obstacle& obstacle, const Obstac
 /// The rigid body that these spheres are, which no force moves.
 RigidBody held_body(const Obstacle& obstacle, const Placement& placement);
 
+/// Ids of the spheres of a packing that stick in an obstacle where it stands: their centre is within one of its spheres.
+/// Programs that place grains at random often leave some there, which then go along with it.
+std::vector<std::int64_t> spheres_stuck_in(const Packing& packing, const Obstacle& obstacle, const Placement& placement);
+/// What to say of them; empty where there are none.
+std::string warning_of_stuck(std::vector<std::int64_t> ids);
+
 /// What one of several ranks has of an obstacle: these of its spheres, ascending, as this rigid body of the packing.
 struct ObstaclePart {
   std::vector<int> spheres;

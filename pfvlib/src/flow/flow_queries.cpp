@@ -9,6 +9,8 @@
 #include "results/sphere_strains.hpp"
 #include "results/viscosity_matrices.hpp"
 #include "step/forces.hpp"
+#include "step/operators.hpp"
+#include "step/stiffest_grain.hpp"
 
 namespace pfv {
 
@@ -79,6 +81,17 @@ double Flow::mean_pressure() const {
 double Flow::time_step_limit(const Eigen::VectorXd& masses, const std::vector<Piston>& pistons,
                              const std::vector<RigidBody>& bodies) {
   return parts_->time_step_limit(masses, pistons, bodies);
+}
+
+StiffestGrain Flow::stiffest_grain(const Eigen::VectorXd& masses) {
+  BuiltNetwork& built = parts_->network();
+  built.share.together([&] {
+    if (masses.size() != parts_->keeper.packed())
+      throw InputError("the stiffest grain: " + std::to_string(masses.size()) + " masses for " +
+                       std::to_string(parts_->keeper.packed()) + " spheres; give one a sphere");
+  });
+  make_force_matrices(built, parts_->problem(), parts_->work.counts);
+  return stiffest_grain_of(built, masses);
 }
 
 std::vector<Eigen::Matrix3d> Flow::viscosity_matrices(const std::vector<int>& columns) const {

@@ -269,6 +269,39 @@ void add_obstacle(PackingArrays& packing, const Obstacle& obstacle, const Obstac
   packing.displaced_volumes.tail(own) = obstacle.displaced(part.spheres);
 }
 
+std::vector<std::int64_t> spheres_stuck_in(const Packing& packing, const Obstacle& obstacle, const Placement& placement) {
+  std::vector<std::pair<double, int>> along;  // x of the obstacle's spheres, sorted
+  Eigen::Matrix3Xd centres(3, obstacle.size());
+  for (int j = 0; j < obstacle.size(); ++j) {
+    centres.col(j) = placement.of(obstacle.centres.col(j));
+    along.emplace_back(centres(0, j), j);
+  }
+  std::sort(along.begin(), along.end());
+  const double widest = obstacle.size() > 0 ? obstacle.radii.maxCoeff() : 0.0;
+  std::vector<std::int64_t> ids;
+  for (Eigen::Index k = 0; k < packing.size(); ++k) {
+    const Vector place = packing.positions.col(k);
+    const auto is_within = [&](const std::pair<double, int>& ball) {
+      return (centres.col(ball.second) - place).norm() < obstacle.radii[ball.second];
+    };
+    const auto begin = std::lower_bound(along.begin(), along.end(), std::pair(place.x() - widest, -1));
+    const auto end = std::upper_bound(begin, along.end(), std::pair(place.x() + widest, std::numeric_limits<int>::max()));
+    if (std::any_of(begin, end, is_within)) ids.push_back(packing.ids[k]);
+  }
+  return ids;
+}
+
+std::string warning_of_stuck(std::vector<std::int64_t> ids) {
+  constexpr std::size_t shown = 5;
+  if (ids.empty()) return {};
+  std::sort(ids.begin(), ids.end());
+  std::string text = std::to_string(ids.size()) + (ids.size() == 1 ? " grain sticks" : " grains stick") +
+                     " in it, the centre within its body (";
+  for (std::size_t k = 0; k < std::min(shown, ids.size()); ++k) text += (k ? ", " : "") + std::to_string(ids[k]);
+  return text + (ids.size() > shown ? ", ..." : "") +
+         "): fluid that they and it close in shares the pressure around; delete them, or place grains beside it alone";
+}
+
 RigidBody held_body(const Obstacle& obstacle, const Placement& placement) {
   RigidBody body;
   body.arms = placement.turn * (obstacle.centres.colwise() - obstacle.centre);

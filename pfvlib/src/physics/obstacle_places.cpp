@@ -27,6 +27,9 @@ constexpr double distinct = 0.02;  // centres are at least so far apart
 /// radius more).
 constexpr double tight = 0.72;
 constexpr double facing = -0.9;  // cosine between the normals of two sides of a thin wall
+/// What differs by less is alike, and the first of those is taken: symmetric meshes are full of ties, which another
+/// origin or unit would round in another way.
+constexpr double alike = 1e-7;
 
 /// Halves the longest edge until none is longer than `step`.
 void divide(const Triangle& triangle, double step, std::vector<Triangle>& pieces) {
@@ -34,12 +37,12 @@ void divide(const Triangle& triangle, double step, std::vector<Triangle>& pieces
   double length = 0.0;
   for (int k = 0; k < 3; ++k) {
     const double own = (triangle.col((k + 1) % 3) - triangle.col(k)).norm();
-    if (own > length * (1.0 + 1e-9)) {
+    if (own > length * (1.0 + alike)) {
       longest = k;
       length = own;
     }
   }
-  if (length <= step) {
+  if (length <= step * (1.0 + alike)) {
     pieces.push_back(triangle);
     return;
   }
@@ -129,7 +132,8 @@ void add_solid(const MeshPart& part, double diameter, ObstaclePlaces& all) {
     for (const Triangle& piece : pieces_of(triangle, balls_apart * diameter)) {
       const Vector middle = piece.rowwise().mean();
       const Touching found = ball_at(middle);
-      if (found.thin && found.radius < 0.5 * diameter) {
+      const bool narrow = found.radius < (0.5 - alike) * diameter;
+      if (found.thin && narrow) {
         for (const Triangle& small : pieces_of(piece, thin_places * diameter)) {
           const Vector place = add_place(small, all);
           const Touching own = ball_at(place);
@@ -138,7 +142,7 @@ void add_solid(const MeshPart& part, double diameter, ObstaclePlaces& all) {
         continue;
       }
       for (const Triangle& small : pieces_of(piece, places_apart * diameter)) add_place(small, all);
-      if (found.radius < 0.5 * diameter) continue;  // at an edge, which stays rounded
+      if (narrow) continue;  // at an edge, which stays rounded
       all.balls.push_back(ball_of(middle - found.radius * outward, found.radius, found.radius, diameter));
     }
   }
@@ -148,7 +152,7 @@ void add_solid(const MeshPart& part, double diameter, ObstaclePlaces& all) {
 void add_edges(const MeshPart& part, double diameter, ObstaclePlaces& all) {
   const double step = places_apart * diameter;
   for (const auto& [begin, end] : part.edges) {
-    const int steps = std::max(1, static_cast<int>(std::ceil((end - begin).norm() / step)));
+    const int steps = std::max(1, static_cast<int>(std::ceil((end - begin).norm() / step - alike)));
     for (int i = 0; i <= steps; ++i) all.places.push_back({begin + (end - begin) * i / steps, 0.25 * step * step});
   }
 }
@@ -156,7 +160,7 @@ void add_edges(const MeshPart& part, double diameter, ObstaclePlaces& all) {
 /// The places that no ball reaches yet.
 class Uncovered {
  public:
-  explicit Uncovered(const std::vector<ObstaclePlace>& places) : left_(places) {
+  Uncovered(const std::vector<ObstaclePlace>& places, double margin) : left_(places), margin_(margin) {
     for (ObstaclePlace& one : left_) one.beyond = std::numeric_limits<double>::max();
   }
   bool empty() const { return left_.empty(); }
@@ -164,7 +168,7 @@ class Uncovered {
     std::size_t kept = 0;
     for (ObstaclePlace& one : left_) {
       one.beyond = std::min(one.beyond, (one.place - ball.centre).norm() - ball.reach);
-      if (one.beyond > 0.0) left_[kept++] = one;
+      if (one.beyond > margin_) left_[kept++] = one;
     }
     left_.resize(kept);
   }
@@ -172,7 +176,7 @@ class Uncovered {
   std::size_t front() const {
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < left_.size(); ++i)
-      if (left_[i].beyond < left_[nearest].beyond) nearest = i;
+      if (left_[i].beyond < left_[nearest].beyond - margin_) nearest = i;
     return nearest;
   }
   const ObstaclePlace& operator[](std::size_t i) const { return left_[i]; }
@@ -181,18 +185,19 @@ class Uncovered {
   std::vector<ObstaclePlace> near(const Vector& place, double distance) const {
     std::vector<ObstaclePlace> result;
     for (const ObstaclePlace& one : left_)
-      if ((one.place - place).squaredNorm() < distance * distance) result.push_back(one);
+      if ((one.place - place).norm() < distance + margin_) result.push_back(one);
     return result;
   }
 
  private:
   std::vector<ObstaclePlace> left_;
+  double margin_;
 };
 
-double gain(const ObstacleBall& ball, const std::vector<ObstaclePlace>& places) {
+double gain(const ObstacleBall& ball, const std::vector<ObstaclePlace>& places, double margin) {
   double area = 0.0;
   for (const ObstaclePlace& one : places)
-    if ((one.place - ball.centre).squaredNorm() <= ball.reach * ball.reach) area += one.area;
+    if ((one.place - ball.centre).norm() <= ball.reach + margin) area += one.area;
   return area;
 }
 
@@ -203,7 +208,8 @@ int best_ball(const ObstaclePlace& front, double diameter, const std::vector<Obs
   constexpr std::size_t looked_at = 32;
   Eigen::ArrayXd from(static_cast<Eigen::Index>(balls.size()));
   for (Eigen::Index j = 0; j < from.size(); ++j) from[j] = (front.place - balls[j].centre).norm() - balls[j].reach;
-  const double nearest = from.minCoeff(), taken = nearest > 0.0 ? nearest + rounded * diameter : 0.0;
+  const double margin = alike * diameter, nearest = from.minCoeff();
+  const double taken = margin + (nearest > margin ? nearest + rounded * diameter : 0.0);
   if (front.beyond <= taken) return -1;
   std::vector<int> reaching;
   for (int j = 0; j < static_cast<int>(balls.size()); ++j)
@@ -213,8 +219,8 @@ int best_ball(const ObstaclePlace& front, double diameter, const std::vector<Obs
   double most = -1.0;
   const std::size_t stride = reaching.size() / looked_at + 1;
   for (std::size_t i = 0; i < reaching.size(); i += stride) {
-    const double own = gain(balls[reaching[i]], around);
-    if (!(own > most)) continue;
+    const double own = gain(balls[reaching[i]], around, margin);
+    if (!(own > most * (1.0 + alike))) continue;
     most = own;
     best = reaching[i];
   }
@@ -224,7 +230,7 @@ int best_ball(const ObstaclePlace& front, double diameter, const std::vector<Obs
 /// Opposite sides of a wall have one middle, and a round body one centre: once is enough.
 void take_with_neighbours(int ball, const std::vector<ObstacleBall>& balls, double apart, std::vector<char>& taken) {
   for (std::size_t j = 0; j < balls.size(); ++j)
-    if ((balls[j].centre - balls[ball].centre).squaredNorm() < apart * apart) taken[j] = 1;
+    if ((balls[j].centre - balls[ball].centre).norm() < apart) taken[j] = 1;
 }
 
 }  // namespace
@@ -240,16 +246,18 @@ ObstaclePlaces places_of(const MeshPart& part, double diameter) {
 std::vector<ObstacleBall> chosen_balls(const ObstaclePlaces& all, double diameter, std::size_t most) {
   std::vector<ObstacleBall> chosen;
   if (all.balls.empty()) return chosen;
-  Uncovered uncovered(all.places);
+  const double margin = alike * diameter;
+  Uncovered uncovered(all.places, margin);
   std::vector<char> taken(all.balls.size(), 0);
   const auto choose = [&](int ball) {
-    take_with_neighbours(ball, all.balls, distinct * diameter, taken);
+    take_with_neighbours(ball, all.balls, distinct * diameter + margin, taken);
     chosen.push_back(all.balls[ball]);
     uncovered.take(all.balls[ball]);
   };
-  const auto largest = std::max_element(all.balls.begin(), all.balls.end(),
-                                        [](const ObstacleBall& a, const ObstacleBall& b) { return a.reach < b.reach; });
-  choose(static_cast<int>(largest - all.balls.begin()));
+  int largest = 0;
+  for (int j = 1; j < static_cast<int>(all.balls.size()); ++j)
+    if (all.balls[j].reach > all.balls[largest].reach + margin) largest = j;
+  choose(largest);
   while (!uncovered.empty() && chosen.size() < most) {
     const std::size_t front = uncovered.front();
     const int next = best_ball(uncovered[front], diameter, all.balls, uncovered);

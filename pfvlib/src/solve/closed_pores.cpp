@@ -17,6 +17,28 @@ namespace {
 
 constexpr int none = -1;
 constexpr double weak = 0.1;  // as a part of the median conductance
+constexpr double covered = 0.01;  // fluid's part of a throat's area; three equal grains in touch leave 0.093
+
+/// `body` with the grains that stick in one, their centre within a sphere of it beside them, as part of it: with it they
+/// close pores as its spheres do among themselves.
+std::vector<int> with_stuck_grains(const PoreNetwork& network, const Spheres& vertices, const std::vector<int>& body,
+                                   const Share& share) {
+  Eigen::VectorXd holder(static_cast<Eigen::Index>(body.size()));
+  std::copy(body.begin(), body.end(), holder.begin());
+  for (const auto& around : network.cell_vertices)
+    for (const Vertex grain : around)
+      for (const Vertex other : around) {
+        if (is_wall(grain) || is_wall(other) || body[network.vertex_sphere[grain]] >= 0) continue;
+        const int held_by = body[network.vertex_sphere[other]];
+        const double away = (vertices.centres.col(grain) - vertices.centres.col(other)).squaredNorm();
+        double& found = holder[network.vertex_sphere[grain]];
+        if (held_by >= 0 && away < vertices.radii[other] * vertices.radii[other]) found = std::max<double>(found, held_by);
+      }
+  if (share.ranks) share.spheres.refresh(*share.ranks, holder);
+  std::vector<int> held(body.size());
+  std::transform(holder.begin(), holder.end(), held.begin(), [](double number) { return static_cast<int>(number); });
+  return held;
+}
 
 /// Throats between spheres of one body only are its surface; two of its spheres make a throat one of its creases.
 enum class AtBody { no, crease, surface };
@@ -55,8 +77,9 @@ double value_at(std::vector<double> values, double place, const Share& share) {
   return value_of(low);
 }
 
-/// Conductances without those that next to nothing flows through, of throats in the creases of a body.
-std::vector<double> without_weak(const PoreNetwork& network, const std::vector<double>& conductances,
+/// Conductances without those that next to nothing flows through: of throats in the creases of a body, and of any that
+/// overlaps have all but covered.
+std::vector<double> without_weak(const PoreNetwork& network, const Throats& throats, const std::vector<double>& conductances,
                                  const std::vector<int>& body, const Share& share) {
   std::vector<double> open;
   for (int t = 0; t < network.throats(); ++t)
@@ -66,7 +89,9 @@ std::vector<double> without_weak(const PoreNetwork& network, const std::vector<d
   const double median = value_at(std::move(open), std::floor(0.5 * count), share);
   std::vector<double> strong = conductances;
   for (int t = 0; t < network.throats(); ++t)
-    if (strong[t] < weak * median && throat_at_body(network, t, body) != AtBody::no) strong[t] = 0.0;
+    if (throats.fluid_area[t] < covered * throats.area[t] ||
+        (strong[t] < weak * median && throat_at_body(network, t, body) != AtBody::no))
+      strong[t] = 0.0;
   return strong;
 }
 
@@ -87,9 +112,9 @@ void leave_out_the_fluid(std::vector<Isolated>& sets, const Unknowns& unknowns, 
   sets.erase(sets.begin() + largest);
 }
 
-CutOff cut_off_pores(const PoreNetwork& network, const std::vector<double>& conductances, const std::vector<int>& body,
-                     const Unknowns& unknowns, const Share& share, const RowShare* rows) {
-  const std::vector<double> strong = without_weak(network, conductances, body, share);
+CutOff cut_off_pores(const PoreNetwork& network, const Throats& throats, const std::vector<double>& conductances,
+                     const std::vector<int>& body, const Unknowns& unknowns, const Share& share, const RowShare* rows) {
+  const std::vector<double> strong = without_weak(network, throats, conductances, body, share);
   CutOff cut{rows ? find_isolated(network, strong, unknowns, share, *rows) : find_isolated(network, strong, unknowns), {}};
   if (!cut.sets.empty()) leave_out_the_fluid(cut.sets, unknowns, share);
   Eigen::VectorXd set = Eigen::VectorXd::Constant(network.pores(), none);
@@ -322,9 +347,10 @@ void close_throats_of(const std::vector<int>& enclosed, const PoreNetwork& netwo
 }  // namespace
 
 ClosedPores take_out_closed_pores(const PoreNetwork& network, const Throats& throats, const Spheres& vertices,
-                                  const std::vector<int>& body, const Share& share, const RowShare* rows,
+                                  const std::vector<int>& bodies, const Share& share, const RowShare* rows,
                                   std::vector<double>& conductances, Unknowns& unknowns) {
-  CutOff cut = cut_off_pores(network, conductances, body, unknowns, share, rows);
+  const std::vector<int> body = with_stuck_grains(network, vertices, bodies, share);
+  CutOff cut = cut_off_pores(network, throats, conductances, body, unknowns, share, rows);
   if (cut.sets.empty()) return {};
   take_out_enclosed(network, surroundings_of(network, cut, body, share), cut, unknowns);
   close_throats_of(unknowns.enclosed_pores, network, conductances);

@@ -19,11 +19,12 @@ struct ClosedPores {
   int joined = 0;    ///< cut off otherwise, at a body: they share the unknown of the pore behind their widest facet
 };
 
-/// Renumbers the unknowns and closes the throats of enclosed pores. `body`: of each sphere, -1 for none. Of several ranks
+/// Renumbers the unknowns and closes the throats of enclosed pores. `bodies`: of each sphere, -1 for none; a sphere whose
+/// centre is within one of a body's counts as part of it here. Of several ranks
 /// (`rows`: as the unknowns are before) each comes to know the ways out of all that is cut off, some 0.1 kB each.
 /// Collective there.
 ClosedPores take_out_closed_pores(const PoreNetwork& network, const Throats& throats, const Spheres& vertices,
-                                  const std::vector<int>& body, const Share& share, const RowShare* rows,
+                                  const std::vector<int>& bodies, const Share& share, const RowShare* rows,
                                   std::vector<double>& conductances, Unknowns& unknowns);
 
 }  // namespace pfv

@@ -50,7 +50,9 @@ int SolvePlan::most_steps(FlowModel& flow, const SolvedInstant& now) {
   constexpr double part_of_limit = 0.7;
   constexpr std::int64_t networks_for_a_limit = 4;
   if (flow.fluid().bulk_modulus) return 1;
-  if (limit_ < 0.0 || flow.retriangulations() - limit_network_ >= networks_for_a_limit) {
+  const std::int64_t networks = flow.retriangulations() - limit_network_;
+  const bool is_new = flow.retriangulations() != last_network_;
+  if (limit_ < 0.0 || networks >= networks_for_a_limit || (is_new && flow.stiffest_grain(now.masses).limit < limit_)) {
     limit_ = flow.time_step_limit(now.masses, now.pistons, now.bodies ? *now.bodies : std::vector<RigidBody>{});
     limit_network_ = flow.retriangulations();
   }
@@ -185,9 +187,9 @@ void SolvePlan::take(FlowModel& flow, const SolvedInstant& now) {
   const std::vector<double> areas = face_areas(flow.container());
   const double area = *std::max_element(areas.begin(), areas.end());
   const bool new_network = flow.retriangulations() != last_network_;
-  last_network_ = flow.retriangulations();
   const double load = std::max(now.load_on_faces, weight);
   const int most = most_steps(flow, now);
+  last_network_ = flow.retriangulations();
   const double answer = 0.5 * limit_ / now.step;  // the fastest motion fades by 2 / limit; not known: below 0
   interval_.take(now.packing.ids, flow.forces(), flow.face_forces(), now.steps, load, area, section, most,
                  new_network, answer, loads_of_level(flow.container(), areas));
