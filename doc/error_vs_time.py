@@ -92,18 +92,23 @@ SOLVERS = [("supernodal", []), ("cg", ["--tolerance", "1e-10"]), ("cg", ["--tole
 REPEATS = 5  # of the same solve, on the kept network
 
 
+def exact_forces(spheres):
+    """Rows of forces, solved in extended precision."""
+    done = subprocess.run([BIN / "pfv_exact_forces", str(spheres)], check=True, capture_output=True, text=True)
+    return np.array([[float(row[key]) for key in ("fx", "fy", "fz")] for row in csv.DictReader(done.stdout.splitlines())])
+
+
 def measure_solvers():
-    """Linear solvers at several tolerances, all against the direct solution."""
+    """Linear solvers at several tolerances, all against a solution in extended precision."""
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for size in THESIS_SECONDS:
             packing = dense_packing(folder, size)
-            exact = None
+            exact = exact_forces(size)
             for solver, words in SOLVERS:
                 repeat = REPEATS if solver != "amg" else 0
                 again = ["--repeat", repeat] if repeat else []
                 result, forces = solve(folder, packing, "--solver", solver, *words, *again, forces=True)
-                exact = forces if exact is None else exact
                 seconds = result["seconds"]
                 mean_flow = 0.5 * (result["inflow"] + result["outflow"])
                 rows.append({

@@ -62,10 +62,16 @@ def fix_keywords():
     return {line.split()[0] for line in listed.splitlines() if line[:1].strip()}
 
 
+OF_PORES = {"conductance", "retriangulate", "shear_viscous", "coupling"}  # a coarse grid has none of them
+
+
 def fix_words(own, given):
-    """Settings of fix pfv: the scene's own, but for those that are given as well, then the given ones."""
+    """Settings of fix pfv: the scene's own, but for those that are given as well, then the given ones. With the model
+    darcy_grid those of pores fall as well."""
     keywords, kept, keyword = fix_keywords(), [], None
     taken = keywords & set(given.split())
+    if "darcy_grid" in given.split():
+        taken |= OF_PORES
     for word in own.split():
         keyword = word if word in keywords else keyword
         kept += [word] if keyword not in taken else []

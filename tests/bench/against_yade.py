@@ -47,7 +47,7 @@ def ours(build, size, folder):
 def theirs(packing, folder):
     result = folder / "yade.json"
     result.unlink(missing_ok=True)
-    run(["yade", "-n", "-x", "-j1", ROOT / "tests/bench/yade_flow.py", packing, result])
+    run(["yade", "-n", "-x", "-j1", ROOT / "tests/bench/yade_flow.py", packing, result, "symmetry"])
     if not result.exists():
         sys.exit("yade wrote no result; run tests/bench/yade_flow.py by hand to see why")
     return json.loads(result.read_text())

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Times YADE's FlowEngine on a packing; run by against_yade.py:
+"""Times YADE's FlowEngine on a packing; run by against_yade.py and doc/error_vs_time.py:
 
-    yade -n -x -j1 yade_flow.py PACKING.csv RESULT.json
+    yade -n -x -j1 yade_flow.py PACKING.csv RESULT.json symmetry|no_slip
 
 The column sinks on its base, as in `pfv bench`: grains are moved between the steps, outside the clock.
 A rebuild takes YADE two steps, triangulation in one and factorisation in the next: their sum is given.
@@ -12,7 +12,7 @@ import resource
 import sys
 import time
 
-packing_file, result_file = sys.argv[-2:]
+packing_file, result_file, wall = sys.argv[-3:]
 
 
 def peak_bytes():
@@ -31,7 +31,7 @@ O.materials.append(FrictMat(young=1e7, poisson=0.5, frictionAngle=0.5, density=2
 walls = O.bodies.append(aabbWalls([Vector3(0, 0, 0), Vector3(1, 1, 1)], thickness=0, material="m"))
 spheres = O.bodies.append([sphere((g["x"], g["y"], g["z"]), g["radius"], material="m")
                            for g in grains])
-flow = FlowEngine(wallIds=walls, useSolver=3, permeabilityFactor=1, viscosity=1, slipBoundary=True,
+flow = FlowEngine(wallIds=walls, useSolver=3, permeabilityFactor=1, viscosity=1, slipBoundary=wall == "symmetry",
                   bndCondIsPressure=[0, 0, 0, 0, 1, 1], bndCondValue=[0, 0, 0, 0, 0, 1],
                   boundaryUseMaxMin=[0] * 6, meshUpdateInterval=-1, defTolerance=-1)
 O.engines = [ForceResetter(), flow]
@@ -46,6 +46,7 @@ def move():
 
 
 first = timed_step()
+inflow = flow.getBoundaryFlux(walls[5])
 steps, rebuilds = [], []
 for _ in range(10):
     move()
@@ -60,4 +61,4 @@ steps.sort()
 rebuilds.sort()
 with open(result_file, "w", encoding="ascii") as file:
     json.dump({"first": first, "rebuild": rebuilds[1], "step": steps[len(steps) // 2],
-               "memory": peak_bytes() - bare, "inflow": flow.getBoundaryFlux(walls[5])}, file)
+               "memory": peak_bytes() - bare, "inflow": inflow}, file)

@@ -45,6 +45,7 @@ class Settings(CommandTest):
                          "coupling auto conductance open_throat retriangulate 0.1 couple_every auto error 0.3")
         self.assertEqual(scene.fix_words(own, "coupling explicit conductance hydraulic_radius"),
                          "retriangulate mean 0.03 coupling explicit conductance hydraulic_radius")
+        self.assertEqual(scene.fix_words(own, "model darcy_grid 2 2 6"), "model darcy_grid 2 2 6")
 
     def test_the_page_of_the_solvers_has_what_the_command_prints(self):
         table = self.run_pfv("settings", "--solvers").stdout
