@@ -130,6 +130,39 @@ struct Period {
   std::vector<char> whole;  ///< pores
 };
 
+/// An image, by its sphere.
+using SphereShift = std::pair<int, Lattice::Shift>;
+
+SphereShift image_of(const ImageCells& found, Vertex v) {
+  const int sphere = found.images.original[v];
+  const Eigen::Vector3d way = found.images.spheres.centres.col(v) - found.grains.spheres.centres.col(sphere);
+  return {sphere, found.images.spheres.lattice().nearest(way)};
+}
+
+/// Whether all that is wanted around own grains where they are is there where its images stand in the cell: spheres with
+/// all their cells. Pores are not compared: where spheres nearly coincide, images may be joined into others.
+bool is_complete_at_home(const ImageCells& found, const PoreNetwork& all) {
+  std::vector<SphereShift> complete;
+  for (int v = 0; v < found.images.spheres.size(); ++v)
+    if (found.around.whole_spheres[v]) complete.push_back(image_of(found, v));
+  std::sort(complete.begin(), complete.end());
+  int cell = -1;
+  for (std::size_t c = 0; c < found.around.cells.size(); ++c) {
+    if (!found.around.cells[c]) continue;
+    ++cell;
+    if (!found.at_home.whole_cells[c]) continue;
+    const Lattice::Shift away = shift_of(all.pore_centres.col(all.cell_pore[cell]), found.images.spheres);
+    if (away == Lattice::here) continue;
+    for (const Vertex v : all.cell_vertices[cell]) {
+      if (is_wall(v) || !found.at_home.whole_spheres[v]) continue;
+      SphereShift image = image_of(found, v);
+      for (int axis = 0; axis < 3; ++axis) image.second[axis] -= away[axis];
+      if (!std::binary_search(complete.begin(), complete.end(), image)) return false;
+    }
+  }
+  return true;
+}
+
 /// False where images are missing.
 bool cut_period(const ImageCells& found, double spacing, Period& period) {
   if (!is_surrounded(found)) return false;
@@ -137,17 +170,12 @@ bool cut_period(const ImageCells& found, double spacing, Period& period) {
   std::iota(same.begin(), same.end(), 0);
   const PoreNetwork all =
       network_of(kept_cells(found.cells, found.around.cells, same), found.images.spheres, spacing);
-  WantedPores wanted;
-  for (auto* flags : {&wanted.any, &wanted.whole, &wanted.complete}) flags->assign(all.pores(), 0);
+  if (!is_complete_at_home(found, all)) return false;
+  std::vector<char> whole(static_cast<std::size_t>(all.pores()), 0);
   int cell = 0;
-  for (std::size_t c = 0; c < found.around.cells.size(); ++c) {
-    if (!found.around.cells[c]) continue;
-    const int pore = all.cell_pore[cell++];
-    if (found.at_home.cells[c]) wanted.any[pore] = 1;
-    if (found.at_home.whole_cells[c]) wanted.whole[pore] = 1;
-    if (found.around.whole_cells[c]) wanted.complete[pore] = 1;
-  }
-  return fold_part(all, found.images, found.grains.spheres, spacing, wanted, period.network, period.whole);
+  for (std::size_t c = 0; c < found.around.cells.size(); ++c)
+    if (found.around.cells[c]) whole[all.cell_pore[cell++]] = found.around.whole_cells[c];
+  return fold_part(all, found.images, found.grains.spheres, spacing, whole, period.network, period.whole);
 }
 
 /// Vertices by the numbers of those that cells have, in their order; -1 for the others.

@@ -14,6 +14,10 @@
 
 namespace pfv {
 
+Lattice::Shift shift_of(const Eigen::Vector3d& place, const Spheres& spheres) {
+  return spheres.lattice().periods(place, [](double x) { return std::floor(x + 1e-6); });
+}
+
 namespace {
 
 /// A pore in units of the spacing may be displaced by this much by rounding and by the choice of the
@@ -22,11 +26,6 @@ constexpr double same_place = 1e-5;
 
 /// What leaves the cell and what comes in may differ by this part of the largest throat.
 constexpr double same_area = 1e-9;
-
-/// Periods that a place is away from the cell; what stands on the cell's upper border but for rounding is below.
-std::array<int, 3> shift_of(const Eigen::Vector3d& place, const Spheres& spheres) {
-  return spheres.lattice().periods(place, [](double x) { return std::floor(x + 1e-6); });
-}
 
 Eigen::Vector3d displacement(const std::array<int, 3>& shift, const Spheres& spheres) {
   return spheres.lattice().displacement(shift);
@@ -384,26 +383,6 @@ bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, 
 
 namespace {
 
-/// Leaves of the home pores those that images of wanted ones lead to; false where one is not there.
-bool take_wanted(const PoreNetwork& all, const Spheres& spheres, double spacing, const WantedPores& wanted,
-                 Folding& folding) {
-  const PoreFinder finder(all, folding.home, spacing);
-  std::vector<char> taken(all.pores(), 0), whole(all.pores(), 0);
-  for (int pore = 0; pore < all.pores(); ++pore) {
-    if (!wanted.any[pore]) continue;
-    const int home = home_of(all, spheres, finder, pore).pore;
-    if (home < 0 || (wanted.whole[pore] && !wanted.complete[home])) return false;
-    taken[home] = 1;
-    whole[home] = whole[home] || wanted.whole[pore];
-  }
-  int pores = 0;
-  for (int pore = 0; pore < all.pores(); ++pore) {
-    folding.home[pore] = taken[pore] ? pores++ : -1;
-    if (taken[pore]) folding.whole.push_back(whole[pore]);
-  }
-  return true;
-}
-
 /// Whether each whole pore has as many throats as its pore of the full network.
 bool has_all_throats(const PoreNetwork& all, const Folding& folding, const std::vector<FoldedThroat>& throats) {
   std::vector<int> missing(folding.whole.size(), 0);
@@ -422,13 +401,13 @@ bool has_all_throats(const PoreNetwork& all, const Folding& folding, const std::
 }  // namespace
 
 bool fold_part(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
-               const WantedPores& wanted, PoreNetwork& network, std::vector<char>& whole) {
+               const std::vector<char>& whole_pores, PoreNetwork& network, std::vector<char>& whole) {
   network = {};
   Folding folding;
   folding.home = home_pores(all, spheres);
-  if (!take_wanted(all, spheres, spacing, wanted, folding) || !find_places(all, spheres, spacing, folding) ||
-      !repeats(all, images.spheres, folding))
-    return false;
+  for (int pore = 0; pore < all.pores(); ++pore)
+    if (folding.home[pore] >= 0) folding.whole.push_back(whole_pores[pore]);
+  if (!find_places(all, spheres, spacing, folding) || !repeats(all, images.spheres, folding)) return false;
   const std::vector<FoldedThroat> throats = fold_throats(all, folding);
   if (!has_all_throats(all, folding, throats)) return false;
   std::vector<int> home_cell(all.cells(), -1);

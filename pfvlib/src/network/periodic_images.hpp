@@ -39,6 +39,9 @@ void refuse_endless_images(const Lattice& lattice, double spheres, double larges
 /// vertices stand for.
 Lattice::Shift periods_of(const PoreNetwork& network, const Spheres& spheres, const Spheres& vertices, Vertex vertex);
 
+/// Periods that a place is away from the cell; what stands on the cell's upper border but for rounding is below.
+Lattice::Shift shift_of(const Eigen::Vector3d& place, const Spheres& spheres);
+
 /// Cuts one period out of the network of all images: the pores whose centre is in the cell, their
 /// cells, and each throat once, with the offset of its second pore's image. Pores are matched by
 /// place, not by their cells, since the images of a cospherical set may be triangulated in different
@@ -47,16 +50,11 @@ Lattice::Shift periods_of(const PoreNetwork& network, const Spheres& spheres, co
 bool fold(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
           PoreNetwork& network);
 
-/// What one of several ranks wants of a period: pores of `all`, wherever their images stand.
-struct WantedPores {
-  std::vector<char> any, whole;  ///< one entry a pore of `all`; whole ones with all their throats
-  std::vector<char> complete;    ///< pores of `all` that have all their throats there
-};
-
-/// The same with the pores of the period that are wanted alone, in the order of all of them; of a pore that is not whole,
-/// throats may be missing. `whole` becomes those of the network. Returns false also where something that is wanted is
-/// not there; which cells hold is for the caller to know.
+/// The same of the part of it that one of several ranks has: the pores of `all` in the period, in the order of all of
+/// them, with the images of those that are whole. `whole_pores`: one entry a pore of `all`; of one that is not whole, throats
+/// may be missing. `whole` becomes those of the network. Returns false also where an image is not there; which cells hold
+/// is for the caller to know.
 bool fold_part(const PoreNetwork& all, const Images& images, const Spheres& spheres, double spacing,
-               const WantedPores& wanted, PoreNetwork& network, std::vector<char>& whole);
+               const std::vector<char>& whole_pores, PoreNetwork& network, std::vector<char>& whole);
 
 }  // namespace pfv
