@@ -26,7 +26,6 @@ std::string FixPfv::needs_one_rank() const {
   if (options.volume_rates == pfv::VolumeRates::geometric) return "volume_rates geometric";
   if (options.solver != pfv::SolverKind::amg && options.solver != pfv::SolverKind::automatic)
     return std::string("solver ") + name_of(options.solver);
-  if (cell_.any() && settings_.fluid.bulk_modulus) return "bulk_modulus beside periodic sides";
   return {};
 }
 
@@ -70,14 +69,16 @@ double FixPfv::spread() const {
 }
 
 /// Where grains have come that have no home yet, or have strayed so far that the parts overlap. The latter is looked at
-/// where there is a new network, and costs another one. Collective, after the grains have been gathered.
+/// where the pores have strained so far that the next call makes a new network, which is then that of the new parts, and
+/// where there is one for another reason: then it costs another one. Collective, after the grains have been gathered.
 void FixPfv::deal_where_due() {
   constexpr double strayed = 1.3;
   if (!ranks_.are_all()) return;
   const PfvHomes known = homes();
   bool homeless = ranks_.dealt.wanted || obstacles_.are_undealt();
   for (int i = 0; i < atom->nlocal && !homeless; ++i) homeless = (atom->mask[i] & groupbit) && !known.is_known(i);
-  const std::int64_t network = flow_ ? flow_->retriangulations() : 0;
+  const bool is_due = flow_ && flow_->strain() >= settings_.options.retriangulation_strain;
+  const std::int64_t network = (flow_ ? flow_->retriangulations() : 0) + (is_due ? 1 : 0);
   const bool is_new = network != ranks_.dealt.network;
   ranks_.dealt.network = network;
   if (ranks_.any(homeless) || (is_new && spread() > strayed * ranks_.dealt.spread)) deal_anew();

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A periodic simulation box with the flow on all ranks: what one rank finds, also of grains that cross the sides."""
+import math
 import re
 import unittest
 
 from coupled import EDGE, dump, forces, largest_difference, packing, random_velocities, read_dump, read_thermo
-from periodic_test import ALL, DRIVEN, EACH, THERMO, PeriodicTest
+from periodic_test import ALL, BULK, DRIVEN, EACH, FLUID, SOLID, THERMO, PeriodicTest
 
 SHARED = "solver amg tolerance 1e-11 ranks "
 RESTARTED = ("units", "boundary", "read_data", "atom_style")
@@ -31,6 +32,7 @@ class SharedCell(PeriodicTest):
             self.assertIn(f"shared by {count} ranks", (self.folder / "log.liggghts").read_text())
             self.assertEqual(len(found), len(rows))
             for row, other in zip(rows, found):
+                self.assertEqual(other["flow[5]"], row["flow[5]"])
                 for name in ("flow", "flow[1]", "flow[2]") + (("flow[7]",) if level else ()):
                     self.assertAlmostEqual(other[name], row[name], delta=max(1e-11, within * abs(row[name])), msg=name)
                 self.assertEqual(other["Step"], row["Step"])
@@ -51,30 +53,54 @@ class SharedCell(PeriodicTest):
 
     def test_grains_that_cross_sides_and_migrate(self):
         """All drift through the cell: more than one in six is wrapped on the way, and goes from rank to rank. A network a
-        step: what has strayed is dealt anew, which makes networks more."""
+        step, with what has strayed dealt anew."""
         self.moving(drift=[4.0 * v for v in self.DRIFT])
-        for words, ranks in (("couple_every 1", (2, 4)), ("couple_every 3", (4,))):
+        for words, ranks in (("couple_every 1", (2, 4)), ("couple_every 3", (4,)),
+                             ("couple_every 1 bulk_modulus 1e4", (3, 4)), ("couple_every 3 bulk_modulus 1e4", (4,))):
             rows, steps = self.compare(f"viscosity 1e-3 {ALL} {words} retriangulate 1e-9", "run 10\n", ranks=ranks,
-                                       level=False, before="neigh_modify delay 0 every 1\n")
+                                       level="bulk" in words, before="neigh_modify delay 0 every 1\n")
             times = re.search("grains dealt to the ranks (.*) times", (self.folder / "log.liggghts").read_text())
             self.assertGreater(int(times.group(1)), 1)
             wrapped = sum(abs(steps[10][n][0] - steps[0][n][0]) > EDGE / 2 for n in steps[0])
             self.assertGreater(wrapped, len(steps[0]) / 6)
             self.assertGreater(rows[-1]["flow[5]"], 0)
 
+    def test_grains_that_have_strayed_are_dealt_anew_with_the_next_network(self):
+        """Of which there are no more than on one rank."""
+        self.moving(drift=[2.0 * v for v in self.DRIFT])
+        for words in ("", "bulk_modulus 1e4"):
+            rows, _ = self.compare(f"viscosity 1e-3 {ALL} {EACH} {words} retriangulate 2e-4", "run 24\n",
+                                   ranks=(4,), level=bool(words), before="neigh_modify delay 0 every 1\n")
+            self.assertGreater(rows[-1]["flow[5]"], 2)
+            self.assertLess(rows[-1]["flow[5]"], 12)
+            times = re.search("grains dealt to the ranks (.*) times", (self.folder / "log.liggghts").read_text())
+            self.assertGreater(int(times.group(1)), 1)
+
     def test_staged_steps(self):
         self.moving(drift=(0.0, 0.0, 0.0))
-        self.compare(f"viscosity 5000 {ALL} coupling staged", "run 4\n", ranks=(2,), level=False)
+        for words in ("", "bulk_modulus 1e4"):
+            self.compare(f"viscosity 5000 {ALL} coupling staged {words}", "run 4\n", ranks=(2,), level=bool(words))
 
     def test_a_cell_that_changes(self):
         for deform in ("x erate -5 z erate 2 remap x", "z erate -20 x volume y volume remap x"):
             self.moving(drift=(0.0, 0.0, 0.0))
-            self.compare(f"viscosity 0.01 {EACH} point 0.05 0.05 0.05 pressure 0", ranks=(4,), flows="volume" not in deform,
-                         before=f"fix strain all deform 1 {deform}\n")
+            for words in ("point 0.05 0.05 0.05 pressure 0", f"bulk_modulus {BULK}"):
+                self.compare(f"viscosity 0.01 {EACH} {words}", ranks=(4,), flows="volume" not in deform,
+                             before=f"fix strain all deform 1 {deform}\n")
+
+    def test_undrained_pressure_is_the_bulk_modulus_times_the_change_of_the_fluid(self):
+        """Over new networks, which count the fluid anew, to second order in that change."""
+        self.moving(drift=(0.0, 0.0, 0.0))
+        for words, within in ((f"{EACH} retriangulate 0.9", 1e-9), (f"{EACH} retriangulate 1e-4", 1e-3),
+                              ("couple_every 5 retriangulate 0.9", 1e-9)):
+            rows, _ = self.compare(f"viscosity 0.01 bulk_modulus {BULK} {words}", "run 20\n", ranks=(4,),
+                                   before="fix strain all deform 1 x erate -5 z erate 2 remap x\n")
+            now = math.prod(rows[-2][hi] - rows[-2][lo] for lo, hi in (("Xlo", "Xhi"), ("Ylo", "Yhi"), ("Zlo", "Zhi"))) - SOLID
+            self.assertAlmostEqual(rows[-1]["flow[7]"] / (BULK * (FLUID - now) / FLUID), 1.0, delta=within)
 
     def test_a_restart_on_the_same_ranks_writes_the_same_bytes_and_on_others_the_same_forces(self):
         self.moving()
-        for words in (DRIVEN, OPEN_TOP):
+        for words in (DRIVEN, f"{DRIVEN} bulk_modulus 1e4", f"{OPEN_TOP} bulk_modulus 1e4"):
             boundary = "p p f" if "face" in words else "p p p"
             self.moving(boundary, drift=self.DRIFT if boundary == "p p p" else (40.0, -30.0, 0.0))
             fix = f"fix flow all pfv {words} {SHARED}all\n"
@@ -102,11 +128,6 @@ class SharedCell(PeriodicTest):
         self.assertEqual(len(moved), len(packing()))
         for axis in range(3):
             self.assertLess(abs(moved[:, axis] - 40e-5 * self.DRIFT[axis]).max(), 1e-6)
-
-    def test_a_compressible_fluid_needs_one_rank(self):
-        self.write()
-        self.refused(f"{self.head()}fix flow all pfv {DRIVEN} bulk_modulus 1e4 {SHARED}all\nrun 1\n",
-                     "bulk_modulus beside periodic sides needs the flow on one rank", ranks=2)
 
     def test_what_goes_wrong_on_one_rank_ends_all_with_its_words(self):
         twins = packing()

@@ -17,24 +17,8 @@ constexpr double everywhere = std::numeric_limits<double>::infinity();
 
 /// Shifts with which a box meets another one.
 std::vector<Lattice::Shift> shifts_into(const Bounds& target, const Bounds& box, const Lattice& lattice) {
-  std::vector<Lattice::Shift> shifts;
-  if (box.is_empty()) return shifts;
-  const Eigen::Vector3d low = target.lower - box.upper, high = target.upper - box.lower;
-  const auto range = [&](int axis, double leaning) {
-    if (!lattice.periodic[axis]) return low[axis] <= 0.0 && high[axis] >= 0.0 ? std::pair(0, 0) : std::pair(1, 0);
-    constexpr double slack = 1e-9;
-    return std::pair(static_cast<int>(std::ceil((low[axis] - leaning) / lattice.edges[axis] - slack)),
-                     static_cast<int>(std::floor((high[axis] - leaning) / lattice.edges[axis] + slack)));
-  };
-  const auto [z0, z1] = range(2, 0.0);
-  for (int z = z0; z <= z1; ++z) {
-    const auto [y0, y1] = range(1, z * lattice.tilt[2]);
-    for (int y = y0; y <= y1; ++y) {
-      const auto [x0, x1] = range(0, y * lattice.tilt[0] + z * lattice.tilt[1]);
-      for (int x = x0; x <= x1; ++x) shifts.push_back({x, y, z});
-    }
-  }
-  return shifts;
+  if (box.is_empty()) return {};
+  return lattice.between(target.lower - box.upper, target.upper - box.lower);
 }
 
 /// The cell, so much wider along its periodic axes, without end along the others.

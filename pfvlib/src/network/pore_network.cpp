@@ -224,16 +224,20 @@ PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin) {
   return space;
 }
 
-int locate(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place,
-           int start) {
+int walk_to(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place, int start) {
   int cell = start;
   for (int steps = 0; steps < network.cells(); ++steps) {
     const auto [distance, facet] = outside_by(network, spheres, place, cell);
     if (distance <= 0.0) return cell;
     cell = network.cell_neighbours[cell][facet];
-    if (cell < 0) break;  // into an image
+    if (cell < 0) return -1;
   }
-  // round-off can make a walk run in a circle between flat cells: take the least bad cell
+  return -1;  // between flat cells round-off can do that
+}
+
+int locate(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place,
+           int start) {
+  if (const int cell = walk_to(network, spheres, place, start); cell >= 0) return cell;
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (int c = 0; c < network.cells(); ++c) {

@@ -38,7 +38,11 @@ struct PoreSpace {
 PoreSpace build_network(const Spheres& spheres, const Eigen::Vector3d& origin);
 
 /// The cell that contains a place (in the coordinates of `spheres`): walks from cell `start` through
-/// the facets that separate; falls back to a search. Cost: about N^(1/3) steps.
+/// the facets that separate. -1 where the walk leaves the network, as into an image, or runs in a circle. Cost: about
+/// N^(1/3) steps.
+int walk_to(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place, int start);
+
+/// The same; where the walk comes to nothing, the cell outside which the place is least, of all.
 int locate(const PoreNetwork& network, const Spheres& spheres, const Eigen::Vector3d& place,
            int start);
 

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace pfv {
 
@@ -36,6 +38,25 @@ struct Lattice {
   /// Those that bring a way nearest to zero.
   Shift nearest(const Eigen::Vector3d& way) const {
     return periods(way, [](double x) { return std::round(x); });
+  }
+  /// All whose way, m, is between two bounds along each axis.
+  std::vector<Shift> between(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const {
+    const auto range = [&](int axis, double leaning) {
+      if (!periodic[axis]) return low[axis] <= 0.0 && high[axis] >= 0.0 ? std::pair(0, 0) : std::pair(1, 0);
+      constexpr double slack = 1e-9;
+      return std::pair(static_cast<int>(std::ceil((low[axis] - leaning) / edges[axis] - slack)),
+                       static_cast<int>(std::floor((high[axis] - leaning) / edges[axis] + slack)));
+    };
+    std::vector<Shift> shifts;
+    const auto [z0, z1] = range(2, 0.0);
+    for (int z = z0; z <= z1; ++z) {
+      const auto [y0, y1] = range(1, z * tilt[2]);
+      for (int y = y0; y <= y1; ++y) {
+        const auto [x0, x1] = range(0, y * tilt[0] + z * tilt[1]);
+        for (int x = x0; x <= x1; ++x) shifts.push_back({x, y, z});
+      }
+    }
+    return shifts;
   }
 };
 

@@ -111,9 +111,4 @@ std::vector<double> strain_volumes(const PoreNetwork& network, const Throats& th
 /// whole volume (overlaps can make it negative).
 Eigen::VectorXd storage_volumes(const Throats& throats);
 
-/// Pressures of a new network from those of the old one: a cell that survives keeps its own, others take
-/// what is found at their place; all are shifted so that the sum of V^f p is conserved.
-Eigen::VectorXd carried_pressures(const BuiltNetwork& old, const Eigen::VectorXd& old_values,
-                                  const BuiltNetwork& now);
-
 }  // namespace pfv

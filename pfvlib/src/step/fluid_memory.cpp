@@ -38,7 +38,7 @@ void carry_on_ranks(FluidMemory& memory, const Replaced& before, const BuiltNetw
     });
     memory.pressures = pressures_from_all(now, numbers, memory.restored);
   } else if (carries && fluid.bulk_modulus) {
-    memory.pressures = carried_on_ranks(old, memory.pressures, now);
+    memory.pressures = carried_on_ranks({old, memory.pressures}, now);
   } else {
     memory.pressures.setZero(fluid.bulk_modulus ? now.network.pores() : 0);
   }
@@ -55,7 +55,7 @@ void carry_pressures(FluidMemory& memory, const Replaced& before, const BuiltNet
     memory.pressures = Eigen::Map<const Eigen::VectorXd>(memory.restored.data(), pores);
   else if (before.network && memory.pressures.size() > 0 &&
            memory.pressures.size() == before.network->network.pores())
-    memory.pressures = carried_pressures(*before.network, memory.pressures, now);
+    memory.pressures = carried_pressures({before.network.get(), memory.pressures}, now);
   else
     memory.pressures.resize(0);
   memory.restored.clear();

@@ -19,8 +19,6 @@ void find_pores(BuiltNetwork& fresh, const Packing& packing, const Problem& prob
   fresh.geometry = geometry_of(container, container.lower);
   PoreSpace space;
   if (problem.ranks) {
-    if (container.any_periodic() && problem.fluid.bulk_modulus)
-      throw InputError("a compressible fluid in a periodic cell works on one rank");
     SharedNetwork shared = build_shared_network(packing, container, problem.options.outside, problem.ranks);
     fresh.halo.emplace(std::move(shared.halo));
     fresh.share = std::move(shared.share);

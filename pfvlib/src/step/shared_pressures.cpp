@@ -10,21 +10,25 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
-#include <utility>
 
 namespace pfv {
 
 namespace {
 
-struct NamedPressure {
+/// A cell of the old network, told; one of the new one, asked for, without a pressure.
+struct NamedCell {
   CellName name;
-  double pressure;
+  std::array<double, 3> place;  ///< `centre_of_cell`
+  double pressure = 0.0;
+
+  Eigen::Map<const Eigen::Vector3d> centre() const { return Eigen::Map<const Eigen::Vector3d>(place.data()); }
 };
 
-bool before(const NamedPressure& a, const NamedPressure& b) { return a.name < b.name; }
+bool has_smaller_name(const NamedCell& a, const NamedCell& b) { return a.name < b.name; }
 
-CellName name_of_cell(const BuiltNetwork& built, int cell) {
-  return cell_name(built.network.cell_vertices[cell], built.vertices);
+NamedCell named_cell(const BuiltNetwork& built, int cell) {
+  const Eigen::Vector3d place = centre_of_cell(built, cell);
+  return {cell_name(built.network.cell_vertices[cell], built.vertices), {place[0], place[1], place[2]}};
 }
 
 /// The rank that is told of a cell of this name.
@@ -40,18 +44,19 @@ struct Answer {
 };
 
 /// Cells of own pores of the old network, told to those who will be asked for them, ascending by their names.
-std::vector<NamedPressure> told_cells(const BuiltNetwork* old, const Eigen::VectorXd& values, const Ranks& ranks) {
+std::vector<NamedCell> told_cells(const FormerPressures& old, const Ranks& ranks) {
   std::vector<Ranks::Bytes> to(ranks.count());
-  for (int c = 0; old && c < old->network.cells(); ++c) {
-    const int pore = old->network.cell_pore[c];
-    if (!old->share.own_pores[pore]) continue;
-    const NamedPressure cell{name_of_cell(*old, c), values[pore]};
+  for (int c = 0; old.network && c < old.network->network.cells(); ++c) {
+    const int pore = old.network->network.cell_pore[c];
+    if (!old.network->share.own_pores[pore]) continue;
+    NamedCell cell = named_cell(*old.network, c);
+    cell.pressure = old.values[pore];
     append(to[teller(cell.name, ranks.count())], &cell, 1);
   }
-  std::vector<NamedPressure> told;
+  std::vector<NamedCell> told;
   for (const Ranks::Bytes& bytes : ranks.hand_over(to))
-    for (const NamedPressure& cell : values_in<NamedPressure>(bytes)) told.push_back(cell);
-  std::stable_sort(told.begin(), told.end(), before);
+    for (const NamedCell& cell : values_in<NamedCell>(bytes)) told.push_back(cell);
+  std::stable_sort(told.begin(), told.end(), has_smaller_name);
   return told;
 }
 
@@ -71,23 +76,27 @@ std::vector<std::vector<Answer>> answers_of(const std::vector<Ranks::Bytes>& to,
   return answers;
 }
 
+Answer pressure_of(const NamedCell& asked, const std::vector<NamedCell>& told, const BuiltNetwork& now) {
+  SurvivingCell survivor(asked.centre(), now);
+  const auto [first, last] = std::equal_range(told.begin(), told.end(), asked, has_smaller_name);
+  for (auto cell = first; cell != last; ++cell) survivor.meet(cell->centre(), cell->pressure);
+  return {survivor.pressure() ? 1.0 : 0.0, survivor.pressure().value_or(0.0)};
+}
+
 /// Of each own pore of `now` the sum of the pressures of its cells that were there before, and how many there are.
-void sum_of_survivors(const std::vector<NamedPressure>& told, const BuiltNetwork& now, Eigen::VectorXd& sum,
-                      Eigen::VectorXi& count) {
+void sum_of_survivors(const FormerPressures& old, const BuiltNetwork& now, Eigen::VectorXd& sum, Eigen::VectorXi& count) {
   const Ranks& ranks = *now.share.ranks;
+  const std::vector<NamedCell> told = told_cells(old, ranks);
   std::vector<Ranks::Bytes> to(ranks.count());
   std::vector<int> asked(now.network.cells(), -1);
   for (int c = 0; c < now.network.cells(); ++c) {
     if (!now.share.own_pores[now.network.cell_pore[c]]) continue;
-    const CellName name = name_of_cell(now, c);
-    asked[c] = teller(name, ranks.count());
-    append(to[asked[c]], &name, 1);
+    const NamedCell cell = named_cell(now, c);
+    asked[c] = teller(cell.name, ranks.count());
+    append(to[asked[c]], &cell, 1);
   }
-  const auto answers = answers_of<CellName>(to, ranks, [&](const CellName& name) -> Answer {
-    const auto found = std::lower_bound(told.begin(), told.end(), NamedPressure{name, 0.0}, before);
-    if (found == told.end() || found->name != name) return {0.0, 0.0};
-    return {1.0, found->pressure};
-  });
+  const auto answers =
+      answers_of<NamedCell>(to, ranks, [&](const NamedCell& cell) { return pressure_of(cell, told, now); });
   std::vector<std::size_t> next(ranks.count(), 0);
   for (int c = 0; c < now.network.cells(); ++c) {
     if (asked[c] < 0) continue;
@@ -98,68 +107,27 @@ void sum_of_survivors(const std::vector<NamedPressure>& told, const BuiltNetwork
   }
 }
 
-/// Finds old pressures at places.
-class OldPlaces {
- public:
-  OldPlaces(const BuiltNetwork* old, const Eigen::VectorXd& values) : old_(old), values_(values) {
-    if (!old_ || old_->network.cells() == 0) return;
-    for (const auto& cell : old_->network.cell_vertices)
-      for (const Vertex v : cell) is_wall(v) ? reach(old_->vertices.wall(v)) : reach(old_->vertices.centres.col(v));
-  }
-
-  /// How far outside a cell of a whole pore the place lies, m, and the pressure there; infinite where none is near.
-  Answer at(const Eigen::Vector3d& absolute) {
-    constexpr double nowhere = std::numeric_limits<double>::infinity();
-    if (!old_) return {nowhere, 0.0};
-    const Eigen::Vector3d place =
-        (absolute - old_->network.origin).cwiseMax(0.0).cwiseMin(old_->vertices.edges);
-    if ((place.array() < lower_.array()).any() || (place.array() > upper_.array()).any()) return {nowhere, 0.0};
-    cell_ = locate(old_->network, old_->vertices, place, cell_);
-    const int pore = old_->network.cell_pore[cell_];
-    if (!old_->share.whole_pores[pore]) return {nowhere, 0.0};
-    return {std::max(0.0, distance_outside(old_->network, old_->vertices, place, cell_)), values_[pore]};
-  }
-
- private:
-  void reach(const Eigen::Vector3d& centre) {
-    lower_ = lower_.cwiseMin(centre);
-    upper_ = upper_.cwiseMax(centre);
-  }
-  /// As far as the wall stands.
-  void reach(const WallSurface& wall) {
-    const Eigen::Vector3d& edges = old_->vertices.edges;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (wall.axis >= 0 && wall.axis != axis) continue;
-      if (wall.axis < 0 || wall.surface.normal[axis] < 0.0) lower_[axis] = std::min(lower_[axis], 0.0);
-      if (wall.axis < 0 || wall.surface.normal[axis] > 0.0) upper_[axis] = std::max(upper_[axis], edges[axis]);
-    }
-  }
-
-  const BuiltNetwork* old_;
-  const Eigen::VectorXd& values_;
-  Eigen::Vector3d lower_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), upper_ = -lower_;
-  int cell_ = 0;
-};
-
 /// Own pores of which nothing was there before take what is found at their places, here or elsewhere.
-void fill_from_places(const BuiltNetwork* old, const Eigen::VectorXd& old_values, const BuiltNetwork& now,
-                      const Eigen::VectorXi& count, Eigen::VectorXd& values) {
+void fill_from_places(const FormerPressures& old, const BuiltNetwork& now, const Eigen::VectorXi& count,
+                      Eigen::VectorXd& values) {
   const Ranks& ranks = *now.share.ranks;
-  OldPlaces places(old, old_values);
+  FormerPlaces places(old, now.container.pressure_gradient);
   std::vector<int> elsewhere;
   Ranks::Bytes questions;
   for (int p = 0; p < now.network.pores(); ++p) {
     if (!now.share.own_pores[p] || count[p] > 0) continue;
     const Eigen::Vector3d place = now.network.origin + now.network.pore_centres.col(p);
-    const Answer own = places.at(place);
+    const FormerPlaces::Found own = places.at(place);
     values[p] = own.pressure;
-    if (own.found == 0.0) continue;
+    if (own.outside == 0.0) continue;
     elsewhere.push_back(p);
     append(questions, place.data(), 3);
   }
   const auto answers = answers_of<std::array<double, 3>>(
-      std::vector<Ranks::Bytes>(ranks.count(), questions), ranks,
-      [&](const std::array<double, 3>& place) { return places.at(Eigen::Map<const Eigen::Vector3d>(place.data())); });
+      std::vector<Ranks::Bytes>(ranks.count(), questions), ranks, [&](const std::array<double, 3>& place) -> Answer {
+        const FormerPlaces::Found found = places.at(Eigen::Map<const Eigen::Vector3d>(place.data()));
+        return {found.outside, found.pressure};
+      });
   for (std::size_t i = 0; i < elsewhere.size(); ++i) {
     Answer best{std::numeric_limits<double>::infinity(), 0.0};
     for (const std::vector<Answer>& of_rank : answers)
@@ -208,19 +176,19 @@ std::vector<PoreRank> own_pores_in_order(const BuiltNetwork& built) {
 
 }  // namespace
 
-Eigen::VectorXd carried_on_ranks(const BuiltNetwork* old, const Eigen::VectorXd& old_values, const BuiltNetwork& now) {
+Eigen::VectorXd carried_on_ranks(const FormerPressures& old, const BuiltNetwork& now) {
   const Share& share = now.share;
   const int pores = now.network.pores();
   Eigen::VectorXd values = Eigen::VectorXd::Zero(pores);
   Eigen::VectorXi count = Eigen::VectorXi::Zero(pores);
-  sum_of_survivors(told_cells(old, old_values, *share.ranks), now, values, count);
+  sum_of_survivors(old, now, values, count);
   for (int p = 0; p < pores; ++p)
     if (count[p] > 0) values[p] /= count[p];
-  fill_from_places(old, old_values, now, count, values);
+  fill_from_places(old, now, count, values);
   // the sum of V^f p is what the storage term conserves (thesis eq. 4.8 with compressibility)
   const Eigen::VectorXd after = storage_volumes(now.throats);
   Eigen::VectorXd sums(3);
-  sums << (old ? storage_volumes(old->throats).dot(old_values) : 0.0), after.dot(values), after.sum();
+  sums << (old.network ? storage_volumes(old.network->throats).dot(old.values) : 0.0), after.dot(values), after.sum();
   share.add(sums);
   if (sums[2] > 0.0) values.array() += (sums[0] - sums[1]) / sums[2];
   share.pores.refresh(*share.ranks, values);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "step/built_network.hpp"
+#include "step/carried_pressures.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -11,11 +11,10 @@ namespace pfv {
 // Pressures of a compressible fluid in a network that several ranks share, from one network to the next and in
 // restarts.
 
-/// `carried_pressures` on several ranks. `old`: null on a rank that had no pores. Each cell of the old network is told
-/// to one rank, which all ask that have a cell of its name; of the few pores none of whose cells was there before,
-/// those that lie in no old cell of their own rank are told to all. Cost: two messages from each rank to each, in all
-/// some 100 B a cell. Collective.
-Eigen::VectorXd carried_on_ranks(const BuiltNetwork* old, const Eigen::VectorXd& old_values, const BuiltNetwork& now);
+/// `carried_pressures` on several ranks. Each cell of the old network is told to one rank, which all ask that have a cell
+/// of its name; of the few pores none of whose cells was there before, those that lie in no old cell of their own rank
+/// are told to all. Cost: two messages from each rank to each, in all some 150 B a cell. Collective.
+Eigen::VectorXd carried_on_ranks(const FormerPressures& old, const BuiltNetwork& now);
 
 /// On the first rank: of each pore, rank after rank in their own order, its number where one rank has them all. No
 /// entries on other ranks. Collective.
