@@ -106,6 +106,7 @@ class FixPfv : public Fix {
   void warn_of_empty_box() const;
   void warn_of(const std::string& problem) const;
   void warn_of_obstacles_and_surfaces() const;
+  void warn_of_light_grains() const;
   void warn_of_likely_slips() const;
   void warn_of_gaps(const std::vector<double>& mesh_areas) const;
   void say_what_holds_the_fluid();

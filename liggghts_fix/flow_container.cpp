@@ -200,8 +200,24 @@ void FixPfv::warn_of_obstacles_and_surfaces() const {
   for (const std::string& line : obstacles_.surfaces_at_rest()) warn_of(line);
 }
 
+/// A density in g/cm3. Where the flow is.
+void FixPfv::warn_of_light_grains() const {
+  constexpr double lightest = 10.0;  // kg/m3
+  const pfv::Packing grains = grains_.grains();
+  const Eigen::VectorXd masses = grains_.masses();
+  double densest = 0.0;
+  for (Eigen::Index k = 0; k < grains.size(); ++k)
+    if (std::isfinite(masses[k])) densest = std::max(densest, masses[k] / (4.0 / 3.0 * M_PI * std::pow(grains.radii[k], 3)));
+  ranks_.take_largest(&densest, 1);
+  if (!(densest > 0.0) || densest >= units().of_density(lightest)) return;
+  std::ostringstream text;
+  text << "no free grain is denser than " << densest << " kg/m3; a density of 2.65 g/cm3 is 2650 kg/m3";
+  warn_of(text.str());
+}
+
 /// A strain in per cent, sensors in another unit than the script's. Where the flow is.
 void FixPfv::warn_of_likely_slips() const {
+  warn_of_light_grains();
   constexpr double large = 0.3, never = 100.0;
   const double strain = settings_.options.retriangulation_strain;
   std::ostringstream text;

@@ -25,8 +25,11 @@ std::string PfvSolveSchedule::summary() const {
   if (!plan_) return {};
   char line[160], error[60] = "";
   // where each step was solved, no load was held that could have erred
-  if (taken_.solves < taken_.steps)
-    std::snprintf(error, sizeof error, ", estimated error %.2g %% of the load", 100.0 * plan_->interval().largest_error());
+  if (taken_.solves < taken_.steps) {
+    const double percent = 100.0 * plan_->interval().largest_error();
+    std::snprintf(error, sizeof error, percent < 99.5 ? ", estimated error %.2g %% of the load" : ", estimated error %.0f %% of the load",
+                  percent);
+  }
   std::snprintf(line, sizeof line, "couple_every auto: solved at %lld of %lld steps%s\n",
                 static_cast<long long>(taken_.solves), static_cast<long long>(taken_.steps), error);
   return line;

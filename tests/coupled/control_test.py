@@ -119,6 +119,13 @@ class Control(CoupledTest):
         self.assertIn("`retriangulate 1` lets the pores change by 100 % before", said)
         self.assertNotIn("lets the pores change", self.liggghts(HEAD + f"fix flow all pfv {FLOW}\nrun 0\n"))
 
+    def test_a_density_in_grams_is_asked_about(self):
+        set_density = "set group all density {}\n"
+        said = self.liggghts(HEAD + set_density.format(2.65) + f"fix flow all pfv {FLOW}\nrun 0\n")
+        self.assertIn("no free grain is denser than 2.65 kg/m3", said)
+        said = self.liggghts(HEAD + set_density.format(11) + f"fix flow all pfv {FLOW}\nrun 0\n")
+        self.assertNotIn("no free grain is denser", said)
+
     def test_fix_modify_retriangulate(self):
         frozen = HEAD + "unfix integr\n" + FIX + THERMO
         self.liggghts(frozen + "run 10\nfix_modify flow retriangulate 1e-9\nrun 10\n")
