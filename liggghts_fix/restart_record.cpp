@@ -11,7 +11,8 @@ namespace LAMMPS_NS {
 
 namespace {
 
-constexpr double format_number = 10.0;
+constexpr double format_number = 11.0;
+constexpr double without_service = 10.0;
 constexpr double without_meshes = 9.0;
 constexpr double without_fingerprint = 8.0;
 constexpr double without_obstacles = 7.0;
@@ -59,6 +60,13 @@ PfvRestartRecord::Meshes meshes_of(Reader& reader) {
   return meshes;
 }
 
+/// What came last into the record, as far as the form `found` has it.
+void read_newest(Reader& reader, double found, PfvRestartRecord& record) {
+  if (found >= without_meshes) record.left = joined(reader.list<double>(3));
+  if (found >= without_service) record.meshes = meshes_of(reader);
+  if (found == format_number) record.flow.served_by_last_network = reader.next();
+}
+
 }  // namespace
 
 std::vector<double> pack(const PfvRestartRecord& record) {
@@ -96,6 +104,7 @@ std::vector<double> pack(const PfvRestartRecord& record) {
     data.push_back(static_cast<double>(list->size()));
     append(*list);
   }
+  data.push_back(record.flow.served_by_last_network);
   return data;
 }
 
@@ -135,8 +144,7 @@ PfvRestartRecord unpack(const char* bytes) {
     record.taken.solves = static_cast<std::int64_t>(reader.next());
   }
   if (found >= without_fingerprint) record.obstacles = reader.list<double>(reader.count());
-  if (found >= without_meshes) record.left = joined(reader.list<double>(3));
-  if (found == format_number) record.meshes = meshes_of(reader);
+  read_newest(reader, found, record);
   return record;
 }
 

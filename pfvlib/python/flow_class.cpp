@@ -170,7 +170,8 @@ py::dict state_of(FlowHost& host) {
   const FlowState state = host.run([](FlowModel& model) { return model.state(); });
   return py::dict("time"_a = state.time, "strain"_a = state.strain, "retriangulations"_a = state.retriangulations,
                   "pore_pressures"_a = array_of(state.pore_pressures), "volume_debt"_a = state.volume_debt,
-                  "fluid_at_start"_a = state.fluid_at_start, "fluid_came_in"_a = state.fluid_came_in);
+                  "fluid_at_start"_a = state.fluid_at_start, "fluid_came_in"_a = state.fluid_came_in,
+                  "served_by_last_network"_a = state.served_by_last_network);
 }
 
 void restore(FlowHost& host, const py::dict& given) {
@@ -183,6 +184,8 @@ void restore(FlowHost& host, const py::dict& given) {
   state.volume_debt = number_of(given["volume_debt"], "volume_debt");
   state.fluid_at_start = number_of(given["fluid_at_start"], "fluid_at_start");
   state.fluid_came_in = number_of(given["fluid_came_in"], "fluid_came_in");
+  if (given.contains("served_by_last_network"))  // states of earlier versions have none
+    state.served_by_last_network = number_of(given["served_by_last_network"], "served_by_last_network");
   host.run([&state](FlowModel& model) { model.set_state(state); });
 }
 

@@ -59,7 +59,7 @@ class MeshMotion(CoupledTest):
     def test_a_restart_file_without_meshes_is_refused(self):
         fix = LID.format("") + DOWN + f"fix flow all pfv viscosity 1 {BOX}\n"
         self.liggghts(HEAD + fix + "run 2\nwrite_restart file.restart\n")
-        now, before = (struct.pack("2d", form, 2.0) for form in (10.0, 9.0))
+        now, before = (struct.pack("2d", form, 2.0) for form in (11.0, 9.0))
         held = (self.folder / "file.restart").read_bytes()
         self.assertEqual(held.count(now), 1)
         (self.folder / "file.restart").write_bytes(held.replace(now, before))

@@ -177,7 +177,7 @@ class Restart(PeriodicTest):
 
     def make_older(self, file):
         """The record of step 10 in form 8, which is read as far as that goes."""
-        forms = [struct.pack("2d", form, 10.0) for form in (10.0, 8.0)]
+        forms = [struct.pack("2d", form, 10.0) for form in (11.0, 8.0)]
         self.assertIn(forms[0], file.read_bytes())
         file.write_bytes(file.read_bytes().replace(*forms, 1))
 

@@ -40,6 +40,13 @@ class Restart(CoupledTest):
         for words in ("", "bulk_modulus 1e4", "coupling staged"):
             self.compare(f"fix flow all pfv {FLOW} solver amg {words}\n")
 
+    def test_auto_goes_by_what_the_network_before_has_served(self):
+        """A network a step: amg from the second one on, and so in the run that goes on."""
+        write_data(self.folder, packing(13), random_velocities(packing(13)))
+        self.compare(f"fix flow all pfv {FLOW} retriangulate 1e-9\n", "run 3\n", "run 2\n")
+        log = (self.folder / "log.liggghts").read_text()
+        self.assertIn("auto: a factor of 2197 spheres pays from 6 solves a network on", log)
+
     def test_two_ranks_write_the_same_bytes_too(self):
         for words in ("", "bulk_modulus 1e4", "retriangulate 1e-6"):
             self.compare(f"fix flow all pfv {FLOW} {words}\n", ranks=2)

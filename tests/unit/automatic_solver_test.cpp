@@ -34,6 +34,74 @@ TEST(AutomaticSolver, TakesAFactorForSmallPackings) {
   EXPECT_EQ(automatic.reason(SolverKind::supernodal), "");
 }
 
+TEST(AutomaticSolver, TakesAmgFor2000SpheresAndMoreBehindANetworkThatServedFewSolves) {
+  for (const Eigen::Index spheres : {1999, 2000, 20000}) {
+    pfv::AutomaticSolver automatic({}, false);
+    pfv::Counts counts;
+    automatic.begin(spheres, counts);
+    EXPECT_EQ(automatic.now(counts), SolverKind::supernodal);
+    counts.solve = 2;
+    automatic.begin(spheres, counts);
+    EXPECT_EQ(automatic.now(counts), spheres < 2000 ? SolverKind::supernodal : SolverKind::amg);
+    counts.solve = 102;  // a factor would have paid by now
+    EXPECT_EQ(automatic.now(counts), SolverKind::supernodal);
+    automatic.begin(spheres, counts);
+    EXPECT_EQ(automatic.now(counts), SolverKind::supernodal);
+  }
+}
+
+TEST(AutomaticSolver, OnceStepsAreTakenTheyAloneCount) {
+  pfv::AutomaticSolver automatic({}, false);
+  pfv::Counts counts, before;
+  automatic.begin(20000, counts);
+  counts.solve = 30;
+  automatic.count_step(before, counts, false);
+  counts.solve = 500;  // of setups
+  counts.limit_solve = 100;
+  automatic.begin(20000, counts);
+  EXPECT_EQ(automatic.last_served(), 30.0);
+  EXPECT_EQ(automatic.now(counts), SolverKind::amg);
+  before = counts;
+  counts.solve += 1;
+  automatic.count_step(before, counts, true);  // with the limit that its network needs
+  EXPECT_EQ(automatic.now(counts), SolverKind::supernodal);
+  automatic.begin(20000, counts);
+  EXPECT_EQ(automatic.last_served(), 101.0);
+}
+
+TEST(AutomaticSolver, OneThatGoesOnChoosesAsTheOneBefore) {
+  for (const double served : {3.0, 300.0, pfv::AutomaticSolver::unknown}) {
+    pfv::AutomaticSolver automatic({}, false);
+    automatic.restore(served);
+    EXPECT_EQ(automatic.last_served(), served);
+    automatic.begin(20000, {});
+    EXPECT_EQ(automatic.last_served(), served);
+    EXPECT_EQ(automatic.now({}), served == 3.0 ? SolverKind::amg : SolverKind::supernodal);
+  }
+}
+
+/// 2500 spheres whose grains change places with each step.
+TEST(AutomaticSolver, AFlowTakesAmgOnNetworksOfOneStepAndHandsItOn) {
+  pfv::PackingArrays packing = pfv::dense_packing(2500);
+  packing.velocities = Eigen::Matrix3Xd::Random(3, 2500) * 1e-3;
+  pfv::Options exact;
+  exact.solver = SolverKind::supernodal;
+  pfv::Flow flow(seepage(), {}), other(seepage(), {}), direct(seepage(), {}, exact);
+  const auto step = [&](pfv::Flow& one) {
+    one.rebuild();
+    return Eigen::Matrix3Xd(one.step(packing.view(), 1e-3).total);
+  };
+  step(flow);
+  EXPECT_EQ(flow.report().solver, "supernodal");
+  const Eigen::Matrix3Xd found = step(flow), expected = step(direct);
+  EXPECT_EQ(flow.report().solver, "amg");
+  EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm());
+  EXPECT_LT(std::abs(flow.report().mass_error), 1e-12);
+  other.set_state(flow.state());
+  EXPECT_EQ(step(other), step(flow));
+  EXPECT_EQ(other.report().solver, "amg");
+}
+
 TEST(AutomaticSolver, BeginsLargeOnesWithAmgAndChangesOverOnceAFactorWouldHavePaid) {
   pfv::AutomaticSolver automatic({}, false);
   pfv::Counts counts;

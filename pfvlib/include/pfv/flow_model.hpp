@@ -37,6 +37,7 @@ struct FlowState {
   std::vector<double> pore_pressures;
   double volume_debt = 0.0;                ///< m³ that implicit steps still owe the pores
   double fluid_at_start = 0.0, fluid_came_in = 0.0;  ///< m³, for the fluid's balance; 0: it begins anew
+  double served_by_last_network = -1.0;  ///< solves, by which `solver auto` goes; -1: not known
 };
 
 /// What one grain alone says of the limit of explicit steps.

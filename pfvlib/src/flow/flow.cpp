@@ -118,6 +118,7 @@ const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
     solved = false;
     kept_balance.reset();
     coupling = by;
+    const Counts before = work.counts;
     if (automatic.is_open() && by == Coupling::implicit) use(SolverKind::supernodal);
     schemes.of(by).check(problem());
     BuiltNetwork& built = update_network(packing, dt, commit);
@@ -127,6 +128,7 @@ const Forces& Flow::Parts::solve(const Packing& packing, double dt, Coupling by,
     if (built.halo) forget_ghosts(forces, packing.size());
     solved = true;
     if (commit) {
+      automatic.count_step(before, work.counts, by == Coupling::staged);
       remember(memory, built, fluid, solution);
       if (solution.moving) keeper.strain(solution);
     }
@@ -251,7 +253,8 @@ FlowState Flow::state() const {
                  : std::vector<double>(pressures.data(), pressures.data() + pressures.size()),
           memory.volume_debt,
           memory.account.at_start,
-          memory.account.came_in};
+          memory.account.came_in,
+          parts_->automatic.last_served()};
 }
 
 void Flow::set_state(FlowState state) {
@@ -264,6 +267,7 @@ void Flow::set_state(FlowState state) {
   parts_->keeper.restore(state.strain, state.retriangulations);
   memory.restored = std::move(state.pore_pressures);
   memory.volume_debt = state.volume_debt;
+  parts_->automatic.restore(state.served_by_last_network);
   memory.account = {state.fluid_at_start != 0.0, state.fluid_at_start, state.fluid_came_in, 0.0, false};
 }
 

@@ -314,7 +314,8 @@ std::vector<Setting> of_solver() {
                           option(&Options::solver));
   solver.help += std::string(name_of(resolved(SolverKind::automatic))) + "; from " + std::to_string(Options{}.amg_from) +
                  " spheres on (where they are solved once from " + std::to_string(amg_from_for_one_solution) +
-                 " on) amg for networks that serve few solves, or whose factor does not fit in memory";
+                 " on), and from 2000 on where the network before has served few solves, amg until a factor pays; also where "
+                 "that does not fit in memory";
   if (!is_built(SolverKind::mumps)) solver.lacks = "; this build has no mumps";
   Setting ordering = choice(row("Solver", "ordering", "fill-reducing ordering of a direct solver; auto: ", both,
                                 any_model),

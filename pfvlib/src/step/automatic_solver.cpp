@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "step/automatic_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <unistd.h>
@@ -9,11 +10,14 @@ namespace pfv {
 
 namespace {
 
-/// In later solves of a step. Those for a limit or a query set out from nothing: some four times as many iterations.
+constexpr Eigen::Index least = 2000;   ///< spheres; below, a factor costs less than twice amg for one solve
+constexpr double from_nothing = 4.0;    ///< a solve for a limit or a query, in later solves of a step: so many more iterations
+constexpr double solves_of_a_limit = 25.0;
+
+double solves_in_steps(const Counts& counts) { return static_cast<double>(counts.solve + counts.correction_solve); }
+
 double solves_of(const Counts& counts) {
-  constexpr double from_nothing = 4.0;
-  return static_cast<double>(counts.solve + counts.correction_solve) +
-         from_nothing * static_cast<double>(counts.limit_solve + counts.query_solve);
+  return solves_in_steps(counts) + from_nothing * static_cast<double>(counts.limit_solve + counts.query_solve);
 }
 
 // From doc/solvers.md, sizes: 52 and 238 solves, 178 and 1468 MB at 20 000 and 100 000 spheres.
@@ -29,14 +33,29 @@ AutomaticSolver::AutomaticSolver(const Options& options, bool shared)
                options.precision == Precision::full && options.threads == 1 && options.rebuild_lag == 0 && !shared),
       from_(options.amg_from) {}
 
-double AutomaticSolver::served(const Counts& counts) const { return solves_of(counts) - before_; }
+double AutomaticSolver::served(const Counts& counts) const {
+  if (!has_stepped_) return solves_of(counts) - before_;
+  return in_steps_ + (has_limit_ ? from_nothing * solves_of_a_limit : 0.0);
+}
 
 void AutomaticSolver::begin(Eigen::Index spheres, const Counts& counts) {
-  last_served_ = had_network_ ? served(counts) : 0.0;
-  had_network_ = true;
+  if (has_network_ && !is_restored_) last_served_ = served(counts);
+  has_network_ = true;
+  is_restored_ = has_limit_ = amg_failed_ = false;
   before_ = solves_of(counts);
+  in_steps_ = 0.0;
   spheres_ = spheres;
-  amg_failed_ = false;
+}
+
+void AutomaticSolver::count_step(const Counts& before, const Counts& now, bool is_long) {
+  has_stepped_ = true;
+  has_limit_ = has_limit_ || is_long;
+  in_steps_ += solves_in_steps(now) - solves_in_steps(before);
+}
+
+void AutomaticSolver::restore(double last_served) {
+  last_served_ = last_served;
+  is_restored_ = has_stepped_ = true;
 }
 
 bool AutomaticSolver::takes_factor_after_failure() {
@@ -51,10 +70,10 @@ bool AutomaticSolver::factor_fits() const {
 }
 
 SolverKind AutomaticSolver::now(const Counts& counts) const {
-  if (spheres_ < from_ || amg_failed_) return SolverKind::supernodal;
+  if (amg_failed_ || spheres_ < std::min(least, from_)) return SolverKind::supernodal;
+  if (last_served_ == unknown && spheres_ < from_) return SolverKind::supernodal;
   if (!factor_fits()) return SolverKind::amg;
-  const double enough = break_even(spheres_);
-  return last_served_ > enough || served(counts) > enough ? SolverKind::supernodal : SolverKind::amg;
+  return std::max(last_served_, served(counts)) > break_even(spheres_) ? SolverKind::supernodal : SolverKind::amg;
 }
 
 std::string AutomaticSolver::reason(SolverKind solver) const {
