@@ -5,6 +5,9 @@
 #include "support/packings.hpp"
 
 #include <gtest/gtest.h>
+#include <cmath>
+#include <memory>
+#include <utility>
 
 namespace flow_averages_test {
 namespace {
@@ -92,6 +95,64 @@ TEST(FlowAverages, NothingCrossesASealedWall) {
     for (const double place : {0.0, 1.0}) EXPECT_EQ(flow.plane_flux(axis, place), 0.0);
   EXPECT_NEAR(flow.plane_flux(2, 0.0), flow.report().inflow, 1e-12 * flow.report().inflow);
   EXPECT_NEAR(flow.plane_flux(2, 1.0), flow.report().inflow, 1e-12 * flow.report().inflow);
+}
+
+/// A periodic cell; where its packing lies in it is the same to the fluid.
+class PeriodicCell {
+ public:
+  PeriodicCell(const Eigen::Vector3d& gradient, const Eigen::Vector3d& tilt) {
+    box_.periodic = {true, true, true};
+    box_.pressure_gradient = gradient;
+    box_.tilt = tilt;
+    edges_ << 1, tilt[0], tilt[1], 0, 1, tilt[2], 0, 0, 1;
+  }
+  /// The place or the image of it that is in the brick at home, and what the gradient raises that by, Pa.
+  std::pair<Eigen::Vector3d, double> wrapped(const Eigen::Vector3d& place) const {
+    Eigen::Vector3d home = place;
+    for (const int axis : {2, 1, 0}) home -= std::floor(home[axis]) * edges_.col(axis);
+    return {home, box_.pressure_gradient.dot(home - place)};
+  }
+  std::unique_ptr<pfv::Flow> flow_of(pfv::PackingArrays packing, const Eigen::Vector3d& shift) const {
+    for (auto place : packing.positions.colwise()) place = wrapped(place + shift).first;
+    auto flow = std::make_unique<pfv::Flow>(box_, viscosity_one());
+    flow->evaluate(packing.view());
+    return flow;
+  }
+
+ private:
+  pfv::Box box_;
+  Eigen::Matrix3d edges_;
+};
+
+// A place at home may lie in the image of a cell whose pore is beyond the other side.
+TEST(FlowAverages, PressuresAtPlacesDoNotDependOnWhereAPeriodicCellBegins) {
+  const auto packing = random_packing(150, 0.07, 0.09, 3);
+  const Eigen::Vector3d shift(0.37, 0.61, 0.23);
+  for (const Eigen::Vector3d& tilt : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.2, -0.1, 0.3)}) {
+    const PeriodicCell cell({1.0, 2.0, 3.0}, tilt);
+    const auto here = cell.flow_of(packing, Eigen::Vector3d::Zero()), there = cell.flow_of(packing, shift);
+    Random random(5);
+    double first = 0.0;
+    for (int k = 0; k < 100; ++k) {
+      const Eigen::Vector3d place = random.in_cube(0.0, 1.0);
+      const auto [moved, raised] = cell.wrapped(place + shift);
+      const double apart = there->pressure_at(moved) - raised - here->pressure_at(place);
+      if (k == 0) first = apart;  // the mean pressure of each is its own
+      EXPECT_NEAR(apart, first, 1e-9) << place.transpose();
+    }
+  }
+}
+
+TEST(FlowAverages, MeanPressuresOfPlanesDoNotDependOnWhereAPeriodicCellBegins) {
+  const auto packing = random_packing(150, 0.07, 0.09, 3);
+  const PeriodicCell cell({1.0, 0.0, 0.0}, {0, 0, 0});
+  const Eigen::Vector3d shift(0.37, 0.61, 0.23);
+  const auto here = cell.flow_of(packing, Eigen::Vector3d::Zero()), there = cell.flow_of(packing, shift);
+  const auto apart = [&](double x) {
+    const auto [moved, raised] = cell.wrapped({x + shift.x(), 0.5, 0.5});
+    return there->plane_pressure(0, moved.x()) - raised - here->plane_pressure(0, x);
+  };
+  for (int k = 0; k < 20; ++k) EXPECT_NEAR(apart((k + 0.5) / 20), apart(0.5), 1e-10) << k;
 }
 
 }  // namespace

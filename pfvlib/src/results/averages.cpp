@@ -6,6 +6,7 @@
 #include "pfv/error.hpp"
 #include "physics/pore_velocities.hpp"
 #include "physics/sphere_stresses.hpp"
+#include "step/carried_pressures.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -155,17 +156,24 @@ SliceMeans slice_means(const BuiltNetwork& built, const Solution& solution, cons
 
 namespace {
 
+/// In the part of this rank.
+FormerPlaces::Found own_pressure_at(const BuiltNetwork& built, const Solution& solution, const Eigen::Vector3d& relative) {
+  if (built.network.cells() == 0) return {std::numeric_limits<double>::infinity(), 0.0};
+  if (std::any_of(built.vertices.periodic.begin(), built.vertices.periodic.end(), [](bool is) { return is; }) &&
+      walk_to(built.network, built.vertices, relative, 0) < 0)  // it may lie in the image of a cell
+    return FormerPlaces({&built, solution.pressures}, solution.container.pressure_gradient).at(built.network.origin + relative);
+  const int cell = locate(built.network, built.vertices, relative, 0), pore = built.network.cell_pore[cell];
+  const bool is_own = !built.share.ranks || built.share.whole_pores[pore];
+  return {is_own ? std::max(0.0, distance_outside(built.network, built.vertices, relative, cell))
+                 : std::numeric_limits<double>::infinity(),
+          solution.pressures[pore]};
+}
+
 /// Of the lowest rank in whose part the place lies.
 double shared_pressure_at(const BuiltNetwork& built, const Solution& solution, const Eigen::Vector3d& relative) {
-  const Share& share = built.share;
-  double outside = std::numeric_limits<double>::infinity(), pressure = 0.0;
-  if (built.network.cells() > 0) {
-    const int cell = locate(built.network, built.vertices, relative, 0), pore = built.network.cell_pore[cell];
-    pressure = solution.pressures[pore];
-    if (share.whole_pores[pore]) outside = std::max(0.0, distance_outside(built.network, built.vertices, relative, cell));
-  }
-  const bool tells = share.is_lowest(-share.largest(-outside) == outside);
-  return share.sum(tells ? pressure : 0.0);
+  const auto [outside, pressure] = own_pressure_at(built, solution, relative);
+  const bool tells = built.share.is_lowest(-built.share.largest(-outside) == outside);
+  return built.share.sum(tells ? pressure : 0.0);
 }
 
 }  // namespace
@@ -183,27 +191,39 @@ double pressure_at(const BuiltNetwork& built, const Solution& solution,
     throw InputError("no pressure at (" + detail::number_text(place[0]) + ", " + detail::number_text(place[1]) + ", " +
                      detail::number_text(place[2]) + "): the place is outside the container, or that has no grains; give "
                      "one within");
-  return built.share.ranks ? shared_pressure_at(built, solution, relative)
-                           : solution.pressures[built.network.cell_pore[locate(built.network, spheres, relative, 0)]];
+  return built.share.ranks ? shared_pressure_at(built, solution, relative) : own_pressure_at(built, solution, relative).pressure;
 }
+
+namespace {
+
+/// Sum, with `raised` (Pa) on each, and number of the pressures of own pores that have cells where a plane is.
+void add_pores_across(const BuiltNetwork& built, const Solution& solution, const CellExtents& extents, double position,
+                      double raised, Eigen::VectorXd& sums) {
+  std::vector<char> counted(built.network.pores(), 0);  // a pore may have several cells
+  for (int c = 0; c < built.network.cells(); ++c) {
+    if (!(extents.low[c] <= position && position <= extents.high[c])) continue;
+    const int pore = built.network.cell_pore[c];
+    if (counted[pore] || !built.share.owns_pore(pore)) continue;
+    counted[pore] = 1;
+    sums += Eigen::Vector2d(solution.pressures[pore] + raised, 1.0);
+  }
+}
+
+}  // namespace
 
 double plane_pressure(BuiltNetwork& built, const Solution& solution, int axis, double position) {
   const double relative = position - built.network.origin[axis];
   std::optional<CellExtents>& extents = built.operators.cell_extents[axis];
   if (!extents) extents = cell_extents(built.network, built.vertices, axis);
-  std::vector<char> counted(built.network.pores(), 0);  // a pore may have several cells
-  double sum = 0.0;
-  int count = 0;
-  for (int c = 0; c < built.network.cells(); ++c) {
-    if (!(extents->low[c] <= relative && relative <= extents->high[c])) continue;
-    const int pore = built.network.cell_pore[c];
-    if (counted[pore] || !built.share.owns_pore(pore)) continue;
-    counted[pore] = 1;
-    sum += solution.pressures[pore];
-    ++count;
+  const Lattice lattice = built.vertices.lattice();
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(2);
+  const int beyond = lattice.periodic[axis] ? 1 : 0;  // images of cells that reach across a side
+  for (int period = -beyond; period <= beyond; ++period) {
+    Lattice::Shift shift = Lattice::here;
+    shift[axis] = period;
+    const Eigen::Vector3d way = lattice.displacement(shift);
+    add_pores_across(built, solution, *extents, relative + way[axis], -solution.container.pressure_gradient.dot(way), sums);
   }
-  Eigen::VectorXd sums(2);
-  sums << sum, count;
   built.share.add(sums);
   if (sums[1] == 0.0)
     throw InputError("the plane at " + detail::number_text(position) + " m cuts no pore");
