@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_command.hpp"
 
+#include "problem/solver_abilities.hpp"
 #include "work/peak_memory.hpp"
 #include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
@@ -324,6 +325,8 @@ void bench(const BenchArguments& arguments, std::ostream& out) {
     const PackingArrays packing = sinking_packing(size);
     for (const std::string& solver : arguments.solvers) {
       options.solver = named<SolverKind>(solver);
+      // auto changes over between networks, a row is of the one that a run begins with
+      if (options.solver == SolverKind::automatic && size < options.amg_from) options.solver = resolved(options.solver);
       options.ordering = named<OrderingKind>(arguments.ordering);
       check(options);
       rows.push_back(measure(packing, options, repeat, bare_memory));

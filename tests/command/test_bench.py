@@ -34,6 +34,7 @@ class Bench(CommandTest):
         large = bytearray(b"x") * 300_000_000
         self.bench("--spheres", "2000", "--repeat", "1", "--report", "bench.json")
         self.assertGreater(self.json("bench.json")["rows"][0]["memory_bytes"], 1_000_000)
+        self.assertEqual(self.json("bench.json")["rows"][0]["solver"], "supernodal")  # of all networks
         self.solve("--face", "zlo:pressure=0", "--face", "zhi:pressure=1", "--viscosity", "1", "--report", "report.json")
         self.assertLess(self.json("report.json")["peak_memory_bytes"], len(large))
 
