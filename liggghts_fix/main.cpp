@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
   handle(SIGTERM, SignalHandler::int_handler);
   handle(SIGUSR1, SignalHandler::usr1_handler);
 
-  MPI_Init(&argc, &argv);
+  int threads = 0;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_MULTIPLE, &threads);  // for rebuild_lag on several ranks
   {
     LAMMPS_NS::LAMMPS lammps(argc, argv, MPI_COMM_WORLD);
     lammps.input->file();

@@ -22,7 +22,6 @@ std::string FixPfv::needs_one_rank() const {
   const pfv::Options& options = settings_.options;
   if (settings_.model != pfv::Model::pores) return "model darcy_grid";
   if (settings_.steps.coupling == pfv::Coupling::implicit) return "coupling implicit";
-  if (options.rebuild_lag > 0) return "rebuild_lag";
   if (options.volume_rates == pfv::VolumeRates::geometric) return "volume_rates geometric";
   if (options.solver != pfv::SolverKind::amg && options.solver != pfv::SolverKind::automatic)
     return std::string("solver ") + name_of(options.solver);

@@ -48,9 +48,10 @@ struct Times {
   std::int64_t networks = 0;
 };
 
-Times run(Column column, double dt, int steps, int lag) {
+Times run(Column column, double dt, int steps, int lag, SolverKind solver) {
   Options options;
   options.rebuild_lag = lag;
+  options.solver = solver;
   Flow flow(column.box, Fluid{}, options);
   flow.evaluate(column.packing.view());
   const double thread = thread_seconds(), wall = wall_seconds();
@@ -72,35 +73,36 @@ double median(std::vector<Times> runs, const Member& member) {
 }
 
 /// `n`: steps from network to network.
-void compare(const Column& column, int n) {
+void compare(const Column& column, int n, SolverKind solver) {
   constexpr int repeats = 3, networks = 2;
   const auto spheres = static_cast<int>(column.packing.radii.size());
   Options kept;
   kept.retriangulation_strain = std::numeric_limits<double>::infinity();
+  kept.solver = solver;
   Flow flow(column.box, Fluid{}, kept);
   double rebuild = thread_seconds();
   flow.step(column.packing.view(), 1.0);
   rebuild = thread_seconds() - rebuild;
   const double dt = 0.01 / flow.strain() / (n - 0.5);
   double step = thread_seconds();
-  for (int i = 0; i < 5; ++i) flow.evaluate(column.packing.view());
+  for (int i = 0; i < 5; ++i) flow.step(column.packing.view(), dt);
   step = (thread_seconds() - step) / 5;
   // a fifth more, because the two threads share caches and memory
   const int lag = static_cast<int>(std::ceil(1.2 * rebuild / step));
   if (lag >= n) {
-    std::printf("| %d | %d | %d | not fast enough for networks of so few steps ||||||\n", spheres, n,
+    std::printf("| %d | %s | %d | %d | not fast enough for networks of so few steps |||||||\n", spheres, name_of(solver), n,
                 lag);
     return;
   }
   const int steps = networks * n + lag + 5;  // until the last of them is in use either way
   std::vector<Times> within, beside;
   for (int i = 0; i < repeats; ++i) {
-    within.push_back(run(column, dt, steps, 0));
-    beside.push_back(run(column, dt, steps, lag));
+    within.push_back(run(column, dt, steps, 0, solver));
+    beside.push_back(run(column, dt, steps, lag, solver));
   }
   const double a = median(within, &Times::thread), b = median(beside, &Times::thread);
-  std::printf("| %d | %d | %d | %lld, %lld | %.3g | %.3g | %.0f %% | %.3g | %.3g | %.3g |\n", spheres,
-              n, lag, static_cast<long long>(within[0].networks),
+  std::printf("| %d | %s | %d | %d | %lld, %lld | %.3g | %.3g | %.0f %% | %.3g | %.3g | %.3g |\n", spheres,
+              name_of(solver), n, lag, static_cast<long long>(within[0].networks),
               static_cast<long long>(beside[0].networks), a, b, 100.0 * (1.0 - b / a),
               median(within, &Times::wall), median(beside, &Times::wall),
               median(beside, &Times::waited));
@@ -115,11 +117,12 @@ int main(int argc, char** argv) {
   if (sizes.empty()) sizes = {5000, 20000};
   double load = 0.0;
   if (getloadavg(&load, 1) == 1) std::printf("Load average %.1f.\n\n", load);
-  std::puts("| spheres | steps a network | `rebuild_lag` | new networks: within, beside | stepping thread, "
+  std::puts("| spheres | solver | steps a network | `rebuild_lag` | new networks: within, beside | stepping thread, "
             "ms a step: within | beside | saved | wall, ms a step: within | beside | of it waited |\n"
-            "|--|--|--|--|--|--|--|--|--|--|");
+            "|--|--|--|--|--|--|--|--|--|--|--|");
   for (const int spheres : sizes) {
     const Column column(spheres);
-    for (const int n : {100, 400}) compare(column, n);
+    for (const SolverKind solver : {SolverKind::supernodal, SolverKind::amg})
+      for (const int n : {100, 400}) compare(column, n, solver);
   }
 }

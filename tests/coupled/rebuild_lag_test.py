@@ -55,6 +55,20 @@ class RebuildLag(CoupledTest):
         _, rows, _, screen = self.run_with("rebuild_lag 4", ranks=2)
         self.assertIn(f"built in the background {rows[-1]['flow[5]']:.0f} ", screen)
 
+    def test_on_ranks_that_share_the_flow(self):
+        """A second thread of each; networks and forces are those of one rank."""
+        words = "rebuild_lag 4 solver amg tolerance 1e-10"
+        alone, of_one, _, _ = self.run_with(words)
+        shared, rows, first, screen = self.run_with(words, ranks=2)
+        self.assertIn("the flow is shared by 2 ranks", screen)
+        networks = rows[-1]["flow[5]"]
+        self.assertGreater(networks, 3)
+        self.assertEqual(networks, of_one[-1]["flow[5]"])
+        self.assertIn(f"built in the background {networks:.0f} ", screen)
+        for step in alone:
+            self.assertLess(largest_difference(shared[step], alone[step]), 1e-6, step)
+        self.assertEqual(self.run_with(words, ranks=2)[2], first)
+
 
 if __name__ == "__main__":
     unittest.main()

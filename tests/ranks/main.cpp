@@ -27,7 +27,8 @@ class Quiet : public testing::EmptyTestEventListener {
 std::shared_ptr<const pfv::Ranks> world() { return all; }
 
 int main(int argc, char** argv) {
-  MPI_Init(&argc, &argv);
+  int threads = 0;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_MULTIPLE, &threads);
   testing::InitGoogleTest(&argc, argv);
   all = pfv::ranks_of(MPI_COMM_WORLD);
   if (!all) {

@@ -327,7 +327,6 @@ TEST(Amg, WhatItCannotDoIsRefusedInOneLine) {
   expect_line(refused([](Options& o) { o.ordering = OrderingKind::metis; }), "the solver amg takes no ordering metis");
   expect_line(refused([](Options& o) { o.precision = Precision::mixed; }),
               "the solver amg takes no choice of precision");
-  expect_line(refused([](Options& o) { o.rebuild_lag = 3; }), "the solver amg does not factor in the background");
   expect_line(refused([](Options& o) { o.tolerance = 0.0; }), "tolerance");
   expect_line(refused(nothing, Coupling::implicit), "the solver amg solves no implicit steps");
   Options by;

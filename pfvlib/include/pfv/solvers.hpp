@@ -44,8 +44,7 @@ struct SolverAbilities {
 };
 
 // Not in the background: what calls the BLAS, which two threads at once may not (Debian's
-// openblas-serial returns wrong factors), what stays inside Trilinos, which is one thread's at a time, and what
-// calls MPI (mumps, amg), which a host may have started for one thread.
+// openblas-serial returns wrong factors), and what stays inside Trilinos, which is one thread's at a time.
 template <>
 struct Names<SolverKind> {
   static constexpr const char* what = "solver";
@@ -64,7 +63,7 @@ struct Names<SolverKind> {
         false, 0.0},
        {SolverKind::mumps, "mumps", "MUMPS", "MUMPS", "MUMPS", OrderingKind::automatic, false, false, false, false,
         false, false, 0.0},
-       {SolverKind::amg, "amg", nullptr, "hypre's BoomerAMG", "pfv", OrderingKind::automatic, false, false, false,
+       {SolverKind::amg, "amg", nullptr, "hypre's BoomerAMG", "pfv", OrderingKind::automatic, false, false, true,
         false, false, true, 1e-7},
        {SolverKind::cg, "cg", nullptr, "pfv", "pfv", OrderingKind::automatic, false, false, true, false, false, true,
         1e-10},

@@ -7,6 +7,7 @@
 #include "problem/solver_abilities.hpp"
 #include "flow/flow_parts.hpp"
 #include "network/grains.hpp"
+#include "parallel/mpi_session.hpp"
 #include "parallel/ranks.hpp"
 #include "step/forces.hpp"
 #include "step/network_builder.hpp"
@@ -64,6 +65,7 @@ BuiltNetwork& Flow::Parts::update_network(const Packing& packing, double dt, boo
       keeper.update(packing, problem(),
                     {dt, commit, memory.pressures.size() > 0, solution}, work, taken_up);
   if (automatic.is_open() && coupling != Coupling::implicit) use(automatic.now(work.counts));
+  if (ranks && is_unfactored(built, fluid, dt)) keeper.await_next();  // hypre sets up one hierarchy at a time
   if (factor_pressures(built, problem(), dt, work)) schemes.forget_factor();
   work.counts.open_water = built.operators.open_water ? open_water_count(built) : 0;
   work.counts.pinned_pores = trapped_pores(built);
@@ -174,9 +176,19 @@ namespace {
 void check_shared(const Options& options) {
   if (resolved(options.solver) != SolverKind::amg)
     throw InputError(std::string("the solver ") + name_of(options.solver) + " runs on one rank; on several give amg");
-  if (options.rebuild_lag > 0) throw InputError("rebuild_lag works on one rank; on several leave it at 0");
   if (options.volume_rates == VolumeRates::geometric || options.partition == Partition::yade)
     throw InputError("the papers' volume rates and YADE's partition work on one rank; on several leave them out");
+}
+
+/// A hierarchy that another thread builds sends messages, on one rank to itself.
+void check_threads(const Options& options, const Ranks* ranks) {
+  if (options.rebuild_lag == 0 || resolved(options.solver) != SolverKind::amg) return;
+  MpiSession::start();
+  const bool lacking = !MpiSession::takes_threads();
+  if (ranks ? ranks->any(lacking) : lacking)
+    throw InputError(
+        "rebuild_lag with the solver amg has two threads in MPI at once, and the program has started MPI for one: start it by "
+        "MPI_Init_thread with MPI_THREAD_MULTIPLE, or leave rebuild_lag at 0");
 }
 
 }  // namespace
@@ -189,6 +201,7 @@ Flow::Flow(Container container, Fluid fluid, Options options, std::shared_ptr<co
   check(options);
   check(container, options);
   if (ranks) check_shared(options);
+  check_threads(options, ranks.get());
   parts_ = std::make_unique<Parts>(std::move(container), fluid, options, std::move(ranks));
 }
 

@@ -94,6 +94,8 @@ void MpiRanks::exchange(const std::vector<std::vector<double>>& to, std::vector<
   messages.wait();
 }
 
+std::shared_ptr<const Ranks> MpiRanks::beside() const { return std::make_shared<MpiRanks>(communicator_); }
+
 std::shared_ptr<const Ranks> ranks_of(MPI_Comm communicator) {
   int count = 1;
   MPI_Comm_size(communicator, &count);

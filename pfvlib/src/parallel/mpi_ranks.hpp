@@ -21,6 +21,7 @@ class MpiRanks final : public Ranks {
   void take_largest(double* values, std::size_t size) const override;
   std::vector<Bytes> hand_over(const std::vector<Bytes>& to) const override;
   void exchange(const std::vector<std::vector<double>>& to, std::vector<std::vector<double>>& from) const override;
+  std::shared_ptr<const Ranks> beside() const override;
 
   MPI_Comm communicator() const { return communicator_; }
 

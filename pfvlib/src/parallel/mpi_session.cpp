@@ -7,12 +7,18 @@ namespace pfv {
 
 void MpiSession::start() { static const MpiSession session; }
 
+bool MpiSession::takes_threads() {
+  int provided = MPI_THREAD_SINGLE;
+  MPI_Query_thread(&provided);
+  return provided == MPI_THREAD_MULTIPLE;
+}
+
 MpiSession::MpiSession() {
   int is_initialized = 0;
   MPI_Initialized(&is_initialized);
   if (is_initialized) return;
   int provided = 0;
-  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);  // threads with flows of their own take turns
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided);
   is_ours_ = true;
 }
 

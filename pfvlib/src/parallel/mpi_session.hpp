@@ -8,6 +8,8 @@ namespace pfv {
 class MpiSession {
  public:
   static void start();
+  /// Whether several threads may be in MPI at once, which the host program decides where it has started it.
+  static bool takes_threads();
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ class Ranks {
   virtual std::vector<Bytes> hand_over(const std::vector<Bytes>& to) const = 0;
   /// The same with lengths that both sides know: those of `from`.
   virtual void exchange(const std::vector<std::vector<double>>& to, std::vector<std::vector<double>>& from) const = 0;
+
+  /// The same ranks, whose messages are apart from these: for another thread of each.
+  virtual std::shared_ptr<const Ranks> beside() const = 0;
 
   double sum(double value) const {
     add(&value, 1);

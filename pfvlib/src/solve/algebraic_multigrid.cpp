@@ -55,7 +55,8 @@ struct Rows {
   std::vector<HYPRE_BigInt> number;  ///< of each of those; -1: left out
 };
 
-/// hypre collects its errors in a flag, which may be one of the host program before.
+/// hypre collects its errors in a flag, which may be one of the host program before or of a hierarchy that another thread
+/// builds; a cycle that clears it then leaves a hierarchy whose solutions the solver refuses.
 void throw_error(const char* what) {
   const HYPRE_Int error = HYPRE_GetError();
   if (error == 0) return;
@@ -157,12 +158,13 @@ void choose_method(HYPRE_Solver amg) {
   HYPRE_BoomerAMGSetPrintLevel(amg, 0);
 }
 
-/// In hypre, alone of this process' threads. Not where ranks share the rows: there each has one thread, and ranks that
-/// waited for others' turns could wait for ever.
+/// In hypre, alone of this process' threads: where hierarchies are built (its random numbers are those of the process), and
+/// in cycles where MPI takes one thread at a time. Not where ranks share the rows: ranks that waited for others' turns could
+/// wait for ever; there a step that builds one waits for that in the background.
 class Turn {
  public:
-  explicit Turn(bool is_shared) : lock_(libraries_mutex, std::defer_lock) {
-    if (!is_shared) lock_.lock();
+  explicit Turn(bool is_needed) : lock_(libraries_mutex, std::defer_lock) {
+    if (is_needed) lock_.lock();
   }
 
  private:
@@ -173,7 +175,7 @@ class Turn {
 
 struct AlgebraicMultigrid::Hierarchy {
   Hierarchy(const SymmetricMatrix& given, const RowShare* shared)
-      : is_shared(shared != nullptr), rows(given, shared), matrix(given, rows), right_side(rows), solution(rows) {
+      : is_shared(shared != nullptr), rows(given, shared), takes_threads(MpiSession::takes_threads()), matrix(given, rows), right_side(rows), solution(rows) {
     HYPRE_BoomerAMGCreate(&amg);
     choose_method(amg);
     HYPRE_BoomerAMGSetup(amg, matrix.object(), right_side.object(), solution.object());
@@ -184,6 +186,7 @@ struct AlgebraicMultigrid::Hierarchy {
 
   bool is_shared;  ///< by ranks
   Rows rows;
+  bool takes_threads;  ///< of MPI
   HypreMatrix matrix;
   HypreVector right_side, solution;
   HYPRE_Solver amg = nullptr;
@@ -195,13 +198,13 @@ AlgebraicMultigrid::~AlgebraicMultigrid() { clear(); }
 
 void AlgebraicMultigrid::clear() {
   if (!hierarchy_) return;
-  const Turn turn(hierarchy_->is_shared);
+  const Turn turn(!hierarchy_->is_shared);
   hierarchy_.reset();
 }
 
 void AlgebraicMultigrid::build(const SymmetricMatrix& matrix, const RowShare* rows) {
   clear();  // its memory is the new one's
-  const Turn turn(rows != nullptr);
+  const Turn turn(rows == nullptr);
   HYPRE_ClearAllErrors();
   auto fresh = std::make_unique<Hierarchy>(matrix, rows);
   throw_error("the hierarchy was not built");
@@ -210,7 +213,7 @@ void AlgebraicMultigrid::build(const SymmetricMatrix& matrix, const RowShare* ro
 
 void AlgebraicMultigrid::apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
   Hierarchy& h = *hierarchy_;
-  const Turn turn(h.is_shared);
+  const Turn turn(!h.is_shared && !h.takes_threads);
   HYPRE_ClearAllErrors();
   if (h.rows.whole) {
     h.right_side.set(r);

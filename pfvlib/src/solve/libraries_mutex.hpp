@@ -6,7 +6,7 @@
 namespace pfv {
 
 /// Of the solver libraries and the BLAS below them, which one thread at a time is in, whichever flow it solves:
-/// Trilinos counts references without atomic operations, hypre has one state of errors, both ask MPI, and two threads
+/// Trilinos counts references without atomic operations, hypre has random numbers of the process, both ask MPI, and two threads
 /// in Debian's openblas-serial get wrong factors.
 inline std::mutex libraries_mutex;
 

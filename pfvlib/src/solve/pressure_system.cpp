@@ -127,15 +127,19 @@ void refuse_lost_boundaries(const Unknowns& unknowns, const PoreBoundaries& boun
     if (contact.face != PoreBoundaries::inside) touched[contact.face] = 1;
   for (int b = 0; b < static_cast<int>(unknowns.of_boundary.size()); ++b) {
     const Boundary& boundary = boundary_of(container, b);
-    if (boundary.drives_flux() && share.largest(unknowns.of_boundary[b]) < 0.0)
-      throw InputError(boundary_name(container, b) +
-                       ": its flux has no pore to enter (all its pores carry an imposed pressure, "
-                       "or it has none); give the flux to another face or enlarge the patch or region");
-    if (b < container.face_count() && boundary.imposes_pressure() && any_pore && !share.any(touched[b] != 0) &&
-        face_areas(container)[b] > 0.0)
-      throw InputError(boundary_name(container, b) +
-                       ": its pressure has no pore to act on, since the face is too small beside the faces around it; "
-                       "give the pressure to one of those, or to a patch");
+    const bool loses_flux = boundary.drives_flux() && share.largest(unknowns.of_boundary[b]) < 0.0;
+    const bool loses_pressure = b < container.face_count() && boundary.imposes_pressure() && any_pore &&
+                                !share.any(touched[b] != 0) && face_areas(container)[b] > 0.0;
+    share.together([&] {
+      if (loses_flux)
+        throw InputError(boundary_name(container, b) +
+                         ": its flux has no pore to enter (all its pores carry an imposed pressure, "
+                         "or it has none); give the flux to another face or enlarge the patch or region");
+      if (loses_pressure)
+        throw InputError(boundary_name(container, b) +
+                         ": its pressure has no pore to act on, since the face is too small beside the faces around it; "
+                         "give the pressure to one of those, or to a patch");
+    });
   }
 }
 
@@ -153,7 +157,8 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
       unknowns.imposed_pores.push_back(pore);
       continue;
     }
-    if (conditions[pore].flux_boundary < 0) {
+    // a ghost whose throats are not all here may belong to a patch that its place does not tell of
+    if (conditions[pore].flux_boundary < 0 || !share.has_whole(pore)) {
       unknowns.of_pore[pore] = unknowns.count++;
       continue;
     }

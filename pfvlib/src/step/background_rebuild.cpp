@@ -19,6 +19,7 @@ struct Task {
   Container container;
   Fluid fluid;
   Options options;
+  std::shared_ptr<const Ranks> ranks;  ///< apart from those of the steps
   double step;
   bool moving;
 
@@ -29,7 +30,7 @@ struct Task {
       WorkRecord& work = result.work;
       const PhaseClock total(work.seconds.total);
       const auto alone = std::make_shared<Team>();  // the other threads are those of the steps
-      const Problem problem{container, fluid, options, alone};
+      const Problem problem{container, fluid, options, alone, ranks};
       result.network = derive_network(grains.view(), problem, work);
       factor_pressures(*result.network, problem, step, work);
       if (moving) {
@@ -48,12 +49,14 @@ struct Task {
 }  // namespace
 
 BackgroundRebuild::BackgroundRebuild(const Packing& packing, const Problem& problem, double step,
-                                     bool moving) {
+                                     bool moving)
+    : ranks_(problem.ranks), beside_(ranks_ ? ranks_->beside() : nullptr) {
   Task task{{packing.ids, packing.positions, packing.radii, Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0),
              packing.displaced_volumes, packing.bodies},
             problem.container,
             problem.fluid,
             problem.options,
+            beside_,
             step,
             moving};
   try {
@@ -65,7 +68,11 @@ BackgroundRebuild::BackgroundRebuild(const Packing& packing, const Problem& prob
 }
 
 std::unique_ptr<BuiltNetwork> BackgroundRebuild::take(WorkRecord& work) {
-  Result result = result_.get();
+  result_.wait();
+  Result result;
+  const auto get = [&] { result = result_.get(); };
+  if (beside_ && beside_->failed_together()) ranks_->together(get);
+  else get();
   add_background(work, result.work);
   return std::move(result.network);
 }

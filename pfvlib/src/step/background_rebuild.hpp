@@ -12,10 +12,12 @@ namespace pfv {
 class BackgroundRebuild {
  public:
   /// `step`, s: as for factor_pressures. `moving`: make what volume rates need, too. Throws SolverError
-  /// where no thread can be started.
+  /// where no thread can be started. Collective.
   BackgroundRebuild(const Packing& packing, const Problem& problem, double step, bool moving);
 
-  /// Waits for the thread and adds what it has done to `work`. Throws what the build has thrown. Once.
+  void wait() const { result_.wait(); }
+  /// Waits for the thread and adds what it has done to `work`. Throws what the build has thrown, on all ranks alike
+  /// where it was so there. Once.
   std::unique_ptr<BuiltNetwork> take(WorkRecord& work);
 
   struct Result {
@@ -24,6 +26,7 @@ class BackgroundRebuild {
   };
 
  private:
+  std::shared_ptr<const Ranks> ranks_, beside_;  ///< that share the packing, and for the thread; null: one has it
   std::future<Result> result_;
 };
 

@@ -90,10 +90,14 @@ std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Probl
   return fresh;
 }
 
+bool is_unfactored(const BuiltNetwork& built, const Fluid& fluid, double step) {
+  return !built.kept.solver || (fluid.bulk_modulus && step != built.kept.storage_dt);
+}
+
 bool factor_pressures(BuiltNetwork& built, const Problem& problem, double step, WorkRecord& work) {
   KeptSystem& kept = built.kept;
   const bool compressible = problem.fluid.bulk_modulus.has_value();
-  if (kept.solver && (!compressible || step == kept.storage_dt)) return false;
+  if (!is_unfactored(built, problem.fluid, step)) return false;
   const bool new_pattern = !kept.solver;
   kept.loses_digits.reset();
   {

@@ -19,6 +19,9 @@ namespace pfv {
 std::unique_ptr<BuiltNetwork> derive_network(const Packing& packing, const Problem& problem,
                                              WorkRecord& work);
 
+/// Whether factor_pressures has something to do.
+bool is_unfactored(const BuiltNetwork& built, const Fluid& fluid, double step);
+
 /// G with the storage V^f / (K_f dt) of a time step `step` (s) on its diagonal, ordered, where it has not been, and
 /// factored. Does nothing, and returns false, where it is there already. Throws SolverError.
 bool factor_pressures(BuiltNetwork& built, const Problem& problem, double step, WorkRecord& work);

@@ -66,6 +66,10 @@ class NetworkKeeper {
 
   /// The next update builds anew. `by_host`: because it has moved grains or faces.
   void discard(bool by_host);
+  /// Waits for the network that is built in the background, where there is one.
+  void await_next() const {
+    if (next_) next_->network.wait();
+  }
   /// Takes in the strain of a step.
   void strain(const Solution& solution) { strain_.add(*built_, solution); }
   /// As after so many networks, the last of which the next update builds.

@@ -122,24 +122,34 @@ bool fluxes_balance(const Container& container) {
   return largest > 0.0 && std::abs(sum) <= 1e-9 * largest;
 }
 
+/// Empty where something determines the pressure.
+std::string what_is_undetermined(const Problem& problem, bool moving) {
+  const Container& container = problem.container;
+  // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
+  if (problem.fluid.bulk_modulus || container.any_periodic() || any_boundary(container, &Boundary::imposes_pressure)) return {};
+  if (moving)
+    return "the grains or faces move, the fluid is incompressible, and no face, patch "
+           "or region has a pressure: nothing determines the pressure; give a pressure to a face, "
+           "or a bulk modulus";
+  if (fluxes_balance(container))
+    return "fluxes are imposed that balance, the fluid is incompressible, and no face, patch or region has a "
+           "pressure: its level is not determined; give one of the faces a pressure in place of its flux";
+  if (any_boundary(container, &Boundary::drives_flux))
+    return "a flux is imposed, the fluid is incompressible, and no face, patch or region has a "
+           "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
+           "modulus";
+  return {};
+}
+
 }  // namespace
 
 void refuse_undetermined(const Problem& problem, bool moving) {
-  const auto& [container, fluid, options, team, ranks] = problem;
-  // a cell that repeats in itself keeps its volume: its pressure is determined but for the level
-  if (fluid.bulk_modulus || container.any_periodic() || any_boundary(container, &Boundary::imposes_pressure))
-    return;
-  if (moving)
-    throw InputError("the grains or faces move, the fluid is incompressible, and no face, patch "
-                     "or region has a pressure: nothing determines the pressure; give a pressure to a face, "
-                     "or a bulk modulus");
-  if (fluxes_balance(container))
-    throw InputError("fluxes are imposed that balance, the fluid is incompressible, and no face, patch or region has a "
-                     "pressure: its level is not determined; give one of the faces a pressure in place of its flux");
-  if (any_boundary(container, &Boundary::drives_flux))
-    throw InputError("a flux is imposed, the fluid is incompressible, and no face, patch or region has a "
-                     "pressure: the fluid cannot leave; give a pressure to a face, or a bulk "
-                     "modulus");
+  const std::string text = what_is_undetermined(problem, moving);
+  const auto refuse = [&] {
+    if (!text.empty()) throw InputError(text);
+  };
+  if (problem.ranks) problem.ranks->together(refuse);
+  else refuse();
 }
 
 /// The factor needs the digits by which what leaves a group of pores differs from what its own throats
