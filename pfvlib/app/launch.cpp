@@ -16,17 +16,9 @@
 namespace pfv::app {
 namespace {
 
-/// What Open MPI, MPICH and those like it, and PMIx launchers tell their programs.
-bool is_launched() {
-  const char* wish = std::getenv("PFV_RANKS");
-  if (wish && std::string(wish) == "one") return false;
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
-    if (std::getenv(name)) return true;
-  return false;
-}
-
 std::shared_ptr<const Ranks> start() {
-  if (!is_launched()) return nullptr;
+  const char* wish = std::getenv("PFV_RANKS");
+  if (!MpiSession::is_launched() || (wish && std::string(wish) == "one")) return nullptr;
   MpiSession::start();
   return ranks_of(MPI_COMM_WORLD);
 }

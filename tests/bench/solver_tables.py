@@ -3,7 +3,7 @@
 """Writes the tables of doc/solvers.md that stand between markers, each by its program:
 
     tests/bench/solver_tables.py [--build BUILD] [TABLE...]      (solvers, bound, precision, background, refreshed,
-                                                                 cells, sizes, auto, tolerance, starts, flux)
+                                                                 cells, sizes, once, auto, tolerance, starts, flux)
 
 CPU times: compare the columns of a table, which one run has made.
 """
@@ -92,6 +92,33 @@ def bound(build):
     return "\n".join(lines)
 
 
+def cpu_of_solving(build, packing, solver, runs):
+    """Least CPU s of whole programs, and what one said of its solver."""
+    least = float("inf")
+    for _ in range(runs):
+        before = os.times()
+        output(build / "bin/pfv", "solve", "--packing", packing, *"--box 0 1 0 1 0 1 --wall symmetry".split(), "--face",
+               "zlo:pressure=0", "--face", "zhi:pressure=1", "--solver", solver, "--report", packing.with_suffix(".json"))
+        after = os.times()
+        least = min(least, after.children_user + after.children_system - before.children_user - before.children_system)
+    return least, json.loads(packing.with_suffix(".json").read_text())["solver"]
+
+
+def once(build):
+    lines = ["| spheres | `pfv solve` by `supernodal`, s | by `amg`, s | `auto` takes | over the better |", "|--" * 5 + "|"]
+    with tempfile.TemporaryDirectory() as folder:
+        for size in ONCE_SIZES:
+            packing = pathlib.Path(folder) / "packing.csv"
+            packing.write_text(output(build / "bin/pfv_dense_packing", size))
+            runs = 5 if size <= 20000 else 1
+            found = {solver: cpu_of_solving(build, packing, solver, runs)[0] for solver in ("supernodal", "amg")}
+            taken = cpu_of_solving(build, packing, "auto", 1)[1]
+            lines.append(f"| {size} | {found['supernodal']:.3g} | {found['amg']:.3g} | {taken} | "
+                         f"{found[taken] / min(found.values()):.2f} |")
+    return "\n".join(lines)
+
+
+ONCE_SIZES = (1000, 2000, 5000, 10000, 14900, 15000, 20000, 50000, 100000, 200000)
 AUTO_SIZES = (1000, 2000, 5000, 10000, 20000, 49000, 50000, 100000, 200000)
 
 TABLES = {
@@ -102,6 +129,7 @@ TABLES = {
     "refreshed": lambda build: output(build / "bin/pfv_refresh_bench").partition("\n\n")[2],
     "cells": lambda build: output(build / "bin/pfv_refresh_bench", "cells"),
     "sizes": lambda build: output(build / "bin/pfv_amg_bench", "sizes", 5000, 20000, 100000),
+    "once": once,
     "auto": lambda build: output(build / "bin/pfv_amg_bench", "auto", *AUTO_SIZES),
     "tolerance": lambda build: output(build / "bin/pfv_amg_bench", "tolerance"),
     "starts": lambda build: output(build / "bin/pfv_amg_bench", "starts"),

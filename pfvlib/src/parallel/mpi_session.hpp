@@ -8,6 +8,8 @@ namespace pfv {
 class MpiSession {
  public:
   static void start();
+  /// By mpirun (Open MPI, MPICH and those like it) or a launcher that speaks PMIx.
+  static bool is_launched();
   /// Whether several threads may be in MPI at once, which the host program decides where it has started it.
   static bool takes_threads();
   ~MpiSession();
