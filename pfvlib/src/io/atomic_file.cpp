@@ -11,16 +11,12 @@
 #include <filesystem>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
 
 namespace pfv {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void fail(const std::string& path, int error) {
-  throw FileError("cannot write " + path + ": " + std::strerror(error) +
-                  ": free space or choose another place");
-}
 
 int write_all(int file, std::string_view content) {
   while (!content.empty()) {
@@ -30,16 +26,6 @@ int write_all(int file, std::string_view content) {
     content.remove_prefix(static_cast<std::size_t>(written));
   }
   return 0;
-}
-
-/// Opens, writes and closes; returns the first error number or 0.
-int fill(const std::string& path, int flags, std::string_view content) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
-  if (file < 0) return errno;
-  const int write_error = write_all(file, content);
-  // A network disk may report that it is full only here.
-  const int close_error = ::close(file) == 0 ? 0 : errno;
-  return write_error ? write_error : close_error;
 }
 
 /// Whether both names lead to one file; works for pipes and devices too.
@@ -80,20 +66,49 @@ bool detail::is_stream(const std::string& path) {
          is_same(path.c_str(), "/dev/stderr");
 }
 
-void detail::write_file(const std::string& path, std::string_view content) {
-  if (is_stream(path)) {
-    if (const int error = fill(path, O_APPEND, content)) fail(path, error);
-    return;
+namespace detail {
+
+AtomicFile::AtomicFile(const std::string& path) : path_(path) {
+  if (!is_stream(path)) {
+    target_ = target_of(path);
+    temporary_ = temporary_beside(target_);
   }
-  const std::string target = target_of(path);
-  const std::string temporary = temporary_beside(target);
-  int error = fill(temporary, O_CREAT | O_EXCL, content);
-  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
-  if (error != 0) {
-    if (error != EEXIST) ::unlink(temporary.c_str());
-    fail(path, error);
-  }
+  const bool stream = temporary_.empty();
+  file_ = ::open((stream ? path_ : temporary_).c_str(), O_WRONLY | O_CLOEXEC | (stream ? O_APPEND : O_CREAT | O_EXCL), 0666);
+  if (file_ >= 0) return;
+  const int error = errno;
+  temporary_.clear();  // whosever it is
+  fail(error);
 }
+
+AtomicFile::~AtomicFile() {
+  if (file_ >= 0) ::close(file_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::put(std::string_view content) {
+  if (const int error = write_all(file_, content)) fail(error);
+}
+
+void AtomicFile::finish() {
+  // A network disk may report that it is full only here.
+  if (::close(std::exchange(file_, -1)) != 0) fail(errno);
+  if (temporary_.empty()) return;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  temporary_.clear();
+}
+
+void AtomicFile::fail(int error) {
+  throw FileError("cannot write " + path_ + ": " + std::strerror(error) + ": free space or choose another place");
+}
+
+void write_file(const std::string& path, std::string_view content) {
+  AtomicFile file(path);
+  file.put(content);
+  file.finish();
+}
+
+}  // namespace detail
 
 void detail::remove_file(const std::string& path) {
   std::error_code none;

@@ -11,8 +11,24 @@ namespace pfv::detail {
 bool is_stream(const std::string& path);
 bool is_standard_output(const std::string& path);
 
-/// Makes the file at `path` hold exactly `content`, or leaves it as it was: writes to a temporary
-/// file in the same folder and renames that. A stream is written straight to. Throws FileError.
+/// What makes the file at `path` hold exactly what is put into it, or leaves it as it was: a temporary file in the same
+/// folder, which `finish` renames. A stream is written straight to. All throw FileError.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::string& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  void put(std::string_view content);
+  void finish();
+
+ private:
+  [[noreturn]] void fail(int error);
+
+  std::string path_, target_, temporary_;  // of a stream the last two are empty
+  int file_ = -1;
+};
+
 void write_file(const std::string& path, std::string_view content);
 
 /// Removes a file, or a link to one, that an earlier run has left at `path`; anything else stays. Throws FileError.

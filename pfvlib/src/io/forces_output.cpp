@@ -5,6 +5,8 @@
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 
+#include <memory>
+
 namespace pfv {
 namespace {
 
@@ -41,16 +43,25 @@ std::string rows_of(const Packing& packing, const Forces& forces) {
   return text;
 }
 
-/// The texts of all ranks in their order, on rank 0.
-std::string joined(const std::string& own, const Ranks& ranks) {
-  std::string all;
-  for (int r = 0; r < ranks.count(); ++r) {  // one at a time: no two of them are on their way together
+/// What each rank has, one after the other, into a file of rank 0.
+void write_in_turn(const std::string& path, const std::string& header, const std::string& own, const Ranks& ranks) {
+  std::unique_ptr<detail::AtomicFile> file;
+  const auto by_first = [&](const auto& write) {
+    ranks.together([&] {
+      if (ranks.own() == 0) write();
+    });
+  };
+  by_first([&] {
+    file = std::make_unique<detail::AtomicFile>(path);
+    file->put(header);
+  });
+  for (int r = 0; r < ranks.count(); ++r) {
     std::vector<Ranks::Bytes> to(ranks.count());
     if (ranks.own() == r) to[0].assign(own.begin(), own.end());
     const Ranks::Bytes part = ranks.hand_over(to)[r];
-    all.append(part.begin(), part.end());
+    by_first([&] { file->put({part.data(), part.size()}); });
   }
-  return all;
+  by_first([&] { file->finish(); });
 }
 
 }  // namespace
@@ -63,10 +74,7 @@ void write_forces(const std::string& path, const Packing& packing, const Forces&
   }
   std::string text;
   ranks->together([&] { text = rows_of(packing, forces); });
-  text = joined(text, *ranks);
-  ranks->together([&] {
-    if (ranks->own() == 0) detail::write_file(path, header + text);
-  });
+  write_in_turn(path, header, text, *ranks);
 }
 
 }  // namespace pfv
