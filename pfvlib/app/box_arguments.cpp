@@ -7,6 +7,7 @@
 #include "text/text_lines.hpp"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace pfv::app {
@@ -113,11 +114,28 @@ bool box_of_file(const SolveArguments& arguments) {
   return arguments.box.empty() || box_is_auto(arguments) || box_is_dump(arguments);
 }
 
-void look_for_box(SolveArguments& arguments) {
+namespace {
+
+/// Of the spheres of all ranks.
+PackingBounds extent_on(const Ranks& ranks, const PackingArrays& own) {
+  Eigen::Matrix<double, 6, 1> reach = Eigen::Matrix<double, 6, 1>::Constant(-std::numeric_limits<double>::infinity());
+  if (own.ids.size() > 0) {
+    const PackingBounds extent = extent_of(own);
+    reach << extent.upper, -extent.lower;
+  }
+  ranks.take_largest(reach.data(), 6);
+  return {-reach.tail<3>(), reach.head<3>(), {}};
+}
+
+}  // namespace
+
+void look_for_box(SolveArguments& arguments, const Ranks& ranks) {
   const bool none = arguments.box.empty() && !arguments.container && arguments.periodic.empty();
   if (!none && !box_is_auto(arguments) && !box_is_dump(arguments) && !periodic_as_dump(arguments)) return;
-  arguments.file = std::make_shared<PackingFile>(
-      read_packing_file(arguments.packing, {arguments.snapshot, length_unit_of(arguments.length_unit)}));
+  PackingChoice choice{arguments.snapshot, 1.0};
+  ranks.together([&] { choice.length_unit = length_unit_of(arguments.length_unit); });
+  arguments.file = std::make_shared<PackingFile>(read_packing_file(arguments.packing, choice, &ranks));
+  arguments.extent = extent_on(ranks, arguments.file->packing);
   const std::optional<PackingBounds>& bounds = arguments.file->bounds;
   if (none && bounds && bounds->periodic[0] && bounds->periodic[1] && bounds->periodic[2])
     arguments.periodic = {"dump"};
@@ -128,7 +146,7 @@ void refuse_without_box(const SolveArguments& arguments) {
   if (arguments.file) {
     const std::optional<PackingBounds>& stated = arguments.file->bounds;
     if (stated) ways += ", --box dump (the simulation box of the file, " + text_of(*stated) + ")";
-    ways += ", --box auto (the extent of the spheres, " + text_of(extent_of(arguments.file->packing)) + ")";
+    ways += ", --box auto (the extent of the spheres, " + text_of(arguments.extent) + ")";
   }
   throw InputError("--box or --container is required, where the walls stand: give --box with " + ways +
                    "; see pfv solve --help");
@@ -137,9 +155,8 @@ void refuse_without_box(const SolveArguments& arguments) {
 Box box_of(const SolveArguments& arguments) {
   Box box;
   if (box_is_auto(arguments)) {
-    const PackingBounds extent = extent_of(arguments.file->packing);
-    box.lower = extent.lower;
-    box.upper = extent.upper;
+    box.lower = arguments.extent.lower;
+    box.upper = arguments.extent.upper;
   } else if (box_is_dump(arguments)) {
     apply_bounds_of_file(arguments, box);
   } else if (!arguments.box.empty()) {

@@ -20,8 +20,8 @@ std::array<bool, 3> periodic_axes(const SolveArguments& arguments);
 Eigen::Vector3d gradient_of(const SolveArguments& arguments);
 
 /// Reads the packing file beforehand where the box may be in it; without a box, a container and periodic axes, a dump
-/// that is periodic all around gives its own.
-void look_for_box(SolveArguments& arguments);
+/// that is periodic all around gives its own. Collective.
+void look_for_box(SolveArguments& arguments, const Ranks& ranks);
 
 /// The six planes of --box. Throws InputError.
 Box box_of(const SolveArguments& arguments);

@@ -2,13 +2,11 @@
 #include "launch.hpp"
 
 #include "distributed/packing_parts.hpp"
-#include "distributed/sphere_records.hpp"
 #include "parallel/mpi_session.hpp"
 #include "pfv/error.hpp"
 #include "pfv/mpi.hpp"
 
 #include <cstdlib>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,21 +28,15 @@ std::shared_ptr<const Ranks> launched_ranks() {
   return ranks;
 }
 
-namespace {
-
-constexpr const char* remedy =
-    ": under one mpirun they share one packing; for programs that each do something of their own set PFV_RANKS=one in their "
-    "environment";
-
-}  // namespace
-
 void refuse_unlike_arguments(const Ranks& ranks, const std::string& arguments) {
   bool unlike = false;
   for (const Ranks::Bytes& other : ranks.gather({arguments.begin(), arguments.end()}))
     unlike = unlike || std::string(other.begin(), other.end()) != arguments;
   const bool any_unlike = ranks.any(unlike);
   ranks.together([&] {
-    if (any_unlike) throw InputError(std::string("the ranks have been given different arguments") + remedy);
+    if (any_unlike)
+      throw InputError("the ranks have been given different arguments: under one mpirun they share one packing; for programs "
+                       "that each do something of their own set PFV_RANKS=one in their environment");
   });
 }
 
@@ -70,23 +62,6 @@ Forces DealtPacking::forces_of_rows(const Forces& forces) const {
   rows.viscous = parts_->returned(forces.viscous);
   rows.torque = parts_->returned(forces.torque);
   return rows;
-}
-
-Eigen::Index first_row(Eigen::Index count, const Ranks* ranks) {
-  return ranks ? count * ranks->own() / ranks->count() : 0;
-}
-
-PackingArrays own_rows(PackingArrays all, const Ranks* ranks) {
-  if (!ranks) return all;
-  const double rows = static_cast<double>(all.ids.size()), most = ranks->largest(rows), least = -ranks->largest(-rows);
-  ranks->together([&] {
-    if (most != least) throw InputError(std::string("the ranks have read packings of different sizes") + remedy);
-  });
-  const Eigen::Index count = all.ids.size(), first = first_row(count, ranks);
-  const Eigen::Index size = count * (ranks->own() + 1) / ranks->count() - first;
-  std::vector<int> own(static_cast<std::size_t>(size));
-  std::iota(own.begin(), own.end(), static_cast<int>(first));
-  return columns_of(all, own);
 }
 
 }  // namespace pfv::app

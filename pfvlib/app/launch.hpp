@@ -43,10 +43,4 @@ class DealtPacking {
   std::unique_ptr<PackingParts> parts_;
 };
 
-/// The first of the rows, of so many in all, that are this rank's share of them.
-Eigen::Index first_row(Eigen::Index count, const Ranks* ranks);
-/// Of a file that each rank has read: its share of the rows. Throws InputError where they have not read the same number.
-/// Collective.
-PackingArrays own_rows(PackingArrays all, const Ranks* ranks);
-
 }  // namespace pfv::app

@@ -97,10 +97,7 @@ void solve_on_ranks(pfv::app::SolveArguments arguments, const std::string& words
   const std::shared_ptr<const pfv::Ranks> ranks = pfv::app::launched_ranks();
   if (ranks) pfv::app::refuse_unlike_arguments(*ranks, words);
   if (std::vector<std::string>& solver = arguments.settings["solver"]; ranks && solver.empty()) solver = {"amg"};
-  pfv::app::SolveRequest request;
-  const auto read = [&] { request = pfv::app::request_of(arguments); };
-  if (ranks) ranks->together(read);
-  else read();
+  const pfv::app::SolveRequest request = pfv::app::request_of(arguments, ranks.get());
   std::ostream silent(nullptr);
   const bool speaks = pfv::app::speaks(ranks.get());
   solve(request, ranks, speaks ? std::cout : silent, speaks ? std::cerr : silent);

@@ -7,6 +7,7 @@
 #include "numbers.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
+#include "parallel/one_rank.hpp"
 #include "pfv/packing_file.hpp"
 #include "text/number_text.hpp"
 #include "text/text_lines.hpp"
@@ -308,10 +309,11 @@ void check_obstacles(const SolveRequest& request) {
 
 }  // namespace
 
-SolveRequest request_of(const SolveArguments& given) {
-  SolveArguments arguments = given;
+namespace {
+
+/// Once the box has been looked for.
+SolveRequest request_in_box(const SolveArguments& arguments) {
   SolveRequest request;
-  look_for_box(arguments);
   request.box_of_file = box_of_file(arguments);
   request.packing = arguments.packing;
   request.choice = {arguments.snapshot, length_unit_of(arguments.length_unit)};
@@ -330,6 +332,16 @@ SolveRequest request_of(const SolveArguments& given) {
   request.vtk = arguments.vtk;
   request.culprits = arguments.culprits;
   check_outputs(request);
+  return request;
+}
+
+}  // namespace
+
+SolveRequest request_of(const SolveArguments& given, const Ranks* ranks) {
+  SolveArguments arguments = given;
+  look_for_box(arguments, ranks_or_one(ranks));
+  SolveRequest request;
+  ranks_or_one(ranks).together([&] { request = request_in_box(arguments); });
   return request;
 }
 
@@ -369,11 +381,11 @@ void refuse_another_cell(const SolveRequest& request, const std::optional<Packin
 
 }  // namespace
 
-PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks) {
-  PackingFile file = request.file ? *request.file : read_packing_file(request.packing, request.choice);
+PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks, const Ranks* ranks) {
+  PackingFile file = request.file ? std::move(*request.file) : read_packing_file(request.packing, request.choice, ranks);
   for (const std::string& remark : file.remarks) remarks << "pfv: " << request.packing << ": " << remark << '\n';
   warn_of_periodic_dump(request, file.bounds, remarks);
-  refuse_another_cell(request, file.bounds);
+  ranks_or_one(ranks).together([&] { refuse_another_cell(request, file.bounds); });
   if (request.box_of_file && request.container.is_box) {
     remarks << "pfv: " << request.packing << ": the flow box was taken from it:" << std::setprecision(12);
     for (int axis = 0; axis < 3; ++axis)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parallel/ranks.hpp"
 #include "pfv/container.hpp"
 #include "pfv/packing_file.hpp"
 #include "pfv/settings.hpp"
@@ -26,8 +27,9 @@ struct SolveArguments {
   std::map<std::string, std::vector<std::string>> settings;  ///< by the names of the table
   std::optional<std::string> time_step, repeat;
   std::optional<std::string> forces, report, vtk, culprits;
-  /// The packing file, once the box has been looked up in it.
+  /// The packing file, once the box has been looked up in it, and the extent of its spheres, on all ranks.
   std::shared_ptr<PackingFile> file;
+  PackingBounds extent;
 };
 
 /// What `pfv solve` is to do.
@@ -48,8 +50,9 @@ struct SolveRequest {
 
 std::string option_of(const Setting& setting);  ///< "--volume-rates"
 
-/// The spheres of the packing file; remarks on how it was read go to `remarks`.
-PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks);
+/// The spheres of the packing file, on several ranks this one's share; remarks on how it was read go to `remarks`. The file
+/// that the request has is used up. Collective.
+PackingArrays packing_of(const SolveRequest& request, std::ostream& remarks, const Ranks* ranks = nullptr);
 
 /// Packing, box and what lies around: for every command that solves a flow.
 void add_flow_options(CLI::App& command, SolveArguments& arguments);
@@ -58,8 +61,8 @@ void add_settings(CLI::App& command, SolveArguments& arguments, const std::vecto
 void add_solve_options(CLI::App& command, SolveArguments& arguments);
 
 /// Throws InputError for whatever can be refused before the packing is read, output folders that
-/// are not there included.
-SolveRequest request_of(const SolveArguments& arguments);
+/// are not there included. Collective.
+SolveRequest request_of(const SolveArguments& arguments, const Ranks* ranks = nullptr);
 
 /// Metres of "mm" or of a number; throws InputError.
 double length_unit_of(const std::string& text);

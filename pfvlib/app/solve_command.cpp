@@ -3,9 +3,11 @@
 
 #include "solve_obstacles.hpp"
 
+#include "distributed/even_rows.hpp"
 #include "launch.hpp"
 #include "network/grains.hpp"
 #include "network/pore_boundaries.hpp"
+#include "parallel/one_rank.hpp"
 #include "work/phase_clock.hpp"
 #include "io/atomic_file.hpp"
 #include "numbers.hpp"
@@ -227,24 +229,22 @@ void add_times(Report& report, double read_seconds, const StepTimes& step, const
 
 /// The grains of a file and, behind them, the spheres of obstacles.
 struct WithObstacles {
-  PackingArrays spheres;
-  Eigen::Index grains = 0;
+  PackingArrays spheres;    ///< this rank's share of all of them
+  Eigen::Index first = 0;   ///< of these, among all
+  Eigen::Index grains = 0;  ///< of all ranks
   std::vector<StandingObstacle> obstacles;
 };
 
-/// On each rank all of them.
 WithObstacles read_spheres(const SolveRequest& request, const Ranks* ranks, std::ostream& warnings) {
   if (!ranks && request.vtk && names_pieces(*request.vtk))
     throw InputError("--vtk " + *request.vtk + ": names the pieces of several ranks; one writes a .vtu");
+  if (ranks) ranks->together([&] { refuse_on_ranks(request); });
+  const Ranks& all = ranks_or_one(ranks);
   WithObstacles read;
-  const auto read_file = [&] {
-    if (ranks) refuse_on_ranks(request);
-    read.spheres = packing_of(request, warnings);
-    read.grains = read.spheres.ids.size();
-    read.obstacles = add_obstacles(request, read.spheres, warnings);
-  };
-  if (ranks) ranks->together(read_file);
-  else read_file();
+  read.spheres = packing_of(request, warnings, ranks);
+  read.grains = rows_of_all(read.spheres.ids.size(), all);
+  read.obstacles = add_obstacles(request, read.spheres, warnings, all);
+  read.first = rows_before(read.spheres.ids.size(), all);
   return read;
 }
 
@@ -254,8 +254,7 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
            std::ostream& warnings) {
   const double start = cpu_seconds();
   WithObstacles read = read_spheres(request, ranks.get(), warnings);
-  const Eigen::Index first = first_row(read.spheres.ids.size(), ranks.get());
-  const DealtPacking dealt(own_rows(std::move(read.spheres), ranks.get()), request.container, ranks.get());
+  const DealtPacking dealt(std::move(read.spheres), request.container, ranks.get());
   const Packing packing = dealt.own();
   const double read_seconds = cpu_seconds() - start;
 
@@ -276,8 +275,8 @@ void solve(const SolveRequest& request, const std::shared_ptr<const Ranks>& rank
   add_times(report, read_seconds, step, ranks.get());
   const bool wants_forces = request.forces || !read.obstacles.empty();
   const Forces forces = wants_forces ? dealt.forces_of_rows(flow.forces()) : Forces{};
-  report.obstacles = results_of(read.obstacles, request, forces, dealt.rows(), first, ranks.get());
-  const Eigen::Index own_grains = std::clamp<Eigen::Index>(read.grains - first, 0, dealt.rows().size());
+  report.obstacles = results_of(read.obstacles, request, forces, dealt.rows(), read.first, ranks.get());
+  const Eigen::Index own_grains = std::clamp<Eigen::Index>(read.grains - read.first, 0, dealt.rows().size());
   write_outputs(request, flow, dealt, report, own_grains, forces, ranks.get());
   warn(request, flow, Facts(request, flow, packing, ranks.get()), report, warnings);
   write_summary(request, report, out);

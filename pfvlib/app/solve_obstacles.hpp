@@ -13,15 +13,16 @@
 
 namespace pfv::app {
 
-/// What stands for the file of an `--obstacle`, as columns of the packing.
+/// What stands for the file of an `--obstacle`, as columns of the packing of all ranks.
 struct StandingObstacle {
   Obstacle obstacle;
   Eigen::Index first, count;
 };
 
-/// Puts the spheres of each obstacle behind the grains, as far as they are in the container; warns of grains that stick in
-/// it.
-std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, PackingArrays& packing, std::ostream& warnings);
+/// Puts the spheres of each obstacle behind the grains of all ranks, as far as they are in the container, and divides all
+/// evenly; warns of grains that stick in it. Collective.
+std::vector<StandingObstacle> add_obstacles(const SolveRequest& request, PackingArrays& packing, std::ostream& warnings,
+                                            const Ranks& ranks);
 
 /// `rows`: those of the packing that this rank has read, from `first_row` on, and what acts on them. Collective on ranks.
 std::vector<ObstacleResult> results_of(const std::vector<StandingObstacle>& obstacles, const SolveRequest& request,

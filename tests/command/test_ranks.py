@@ -2,6 +2,7 @@
 """`pfv solve` under mpirun: several ranks give what one gives, and speak with one voice."""
 import os
 import subprocess
+import sys
 import unittest
 
 import numpy
@@ -18,6 +19,13 @@ WATCHED = """"$@" > /dev/null &
 while [ -r /proc/$!/status ] && text=$(< /proc/$!/status) && [[ $text == *VmPeak* ]]; do last=$text; sleep 0.02; done 2> /dev/null
 wait $! || exit
 last=${last#*VmPeak:}; echo "VmPeak: ${last%%kB*}"
+"""
+
+
+# runs a program and writes how much memory it has held, kB
+MEASURED = """import os, resource, subprocess, sys
+subprocess.run(sys.argv[1:], stderr=subprocess.DEVNULL)
+open(f"peak_{os.getpid()}", "w").write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
 """
 
 
@@ -127,6 +135,41 @@ class Ranks(CommandTest):
         self.assertEqual(len(own), 1, done.stderr)
         self.assertIn("is not inside the box", own[0])
         self.assertFalse((self.folder / "all.csv").exists())
+
+    def test_no_rank_holds_the_packing(self):
+        """To the end of the reading, where a sphere turns out to be outside: less than the file's text on each of four."""
+        rows = 150000
+        with open(self.folder / "many.csv", "w") as file:
+            file.write("id,x,y,z,radius\n")
+            file.writelines(f"{k},{(k * 0.6180339887498949) % 1.0!r},{(k * 0.4142135623730951) % 1.0!r},{k / rows!r},1e-4\n"
+                            for k in range(1, rows + 1))
+        (self.folder / "two.csv").write_text("id,x,y,z,radius\n1,0.9,0.5,0.5,0.1\n2,0.2,0.2,0.2,0.1\n")
+        few, many = (self.peak_while_reading(name) for name in ("two.csv", "many.csv"))
+        self.assertLess(many - few, (self.folder / "many.csv").stat().st_size / 1024)
+
+    def peak_while_reading(self, packing):
+        """Of the largest of four ranks, kB."""
+        command = [*MPIRUN, "-n", "4", sys.executable, "-S", "-c", MEASURED, os.environ["PFV_COMMAND"], "solve", "--packing",
+                   packing, "--box", "0", "0.5", "0", "1", "0", "1", *THROUGH_FLOW]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=300)
+        files = list(self.folder.glob("peak_*"))
+        self.assertEqual(len(files), 4, done.stderr)
+        peaks = [int(file.read_text()) for file in files]
+        for file in files:
+            file.unlink()
+        return max(peaks)
+
+    def test_what_is_said_of_a_file_is_what_one_rank_says(self):
+        with open(DENSE) as file:
+            lines = file.read().splitlines()
+        (self.folder / "twice.csv").write_text("\n".join([*lines, lines[7]]) + "\n")
+        (self.folder / "no_ids.csv").write_text("\n".join(line.split(",", 1)[1] for line in lines))
+        self.run_pfv("convert", "no_ids.csv", "points.vtu")
+        for packing, box in (("twice.csv", UNIT_BOX), ("no_ids.csv", ["--box", "auto"]), ("points.vtu", UNIT_BOX)):
+            options = ["--packing", packing, *box, *THROUGH_FLOW, "--solver", "amg"]
+            one, all_ = self.run_pfv("solve", *options), self.on_ranks(3, *options)
+            own = [line for line in all_.stderr.splitlines() if line.startswith("pfv: ")]
+            self.assertEqual((all_.returncode, own), (one.returncode, one.stderr.splitlines()))
 
     def test_a_rank_without_memory_ends_all(self):
         """It may have what two ranks need for a small packing, and a third of what its part of a large one takes."""

@@ -13,6 +13,8 @@
 
 namespace pfv {
 
+class Ranks;
+
 /// The simulation box that a dump or a data file states, m.
 struct PackingBounds {
   Eigen::Vector3d lower, upper;
@@ -53,7 +55,11 @@ double length_unit(const std::string& text);
 /// - a LIGGGHTS data file (`Atoms` of the styles granular and sphere, `Velocities`);
 /// - points of a legacy VTK file (ASCII), a .vtu or a .vtp file.
 /// Throws InputError naming file, line and field, or what kind of file it is instead.
-PackingFile read_packing_file(const std::string& path, const PackingChoice& choice = {});
+///
+/// On several ranks each gets an even share of the spheres, those of rank 0 first, and all else that the file holds. Of a
+/// table or a dump each rank reads its own part; of the other formats, in which what belongs to a sphere stands in several
+/// places, rank 0 reads all. Collective then, and an error is that of all.
+PackingFile read_packing_file(const std::string& path, const PackingChoice& choice = {}, const Ranks* ranks = nullptr);
 
 /// The formats that spheres are written in.
 enum class PackingFormat {

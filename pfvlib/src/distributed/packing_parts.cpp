@@ -136,26 +136,7 @@ PackingParts::PackingParts(const Packing& rows, const Container& container, cons
   });
   const std::vector<int> rank_of = parts_by_place(places_in_cell(rows, container), ranks);
   for (std::size_t k = 0; k < rank_of.size(); ++k) sent_[rank_of[k]].push_back(static_cast<int>(k));
-  deal(rows);
-}
-
-void PackingParts::deal(const Packing& rows) {
-  const SphereArrays arrays = arrays_of_all(rows, *ranks_);
-  std::vector<Ranks::Bytes> to(ranks_->count());
-  for (int r = 0; r < ranks_->count(); ++r)
-    for (const int k : sent_[r]) append_sphere(to[r], rows, k);
-  const std::vector<Ranks::Bytes> from = ranks_->hand_over(to);
-  Eigen::Index total = 0;
-  for (const Ranks::Bytes& bytes : from) {
-    received_.push_back(static_cast<int>(spheres_in(bytes)));
-    total += received_.back();
-  }
-  resize(own_, arrays, total);
-  Eigen::Index next = 0;
-  for (int r = 0; r < ranks_->count(); ++r) {
-    take_spheres(own_, from[r], next);
-    next += received_[r];
-  }
+  own_ = handed_over(rows, sent_, received_, ranks);
 }
 
 Eigen::Matrix3Xd PackingParts::returned(const Eigen::Matrix3Xd& values) const {

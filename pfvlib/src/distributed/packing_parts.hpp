@@ -23,8 +23,6 @@ class PackingParts {
   Eigen::Matrix3Xd returned(const Eigen::Matrix3Xd& values) const;
 
  private:
-  void deal(const Packing& rows);
-
   const Ranks* ranks_;
   std::vector<std::vector<int>> sent_;  ///< to each rank: rows
   std::vector<int> received_;           ///< from each rank: how many, in its order

@@ -3,6 +3,7 @@
 
 #include "network/grains.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -61,6 +62,39 @@ void take_spheres(PackingArrays& packing, const Ranks::Bytes& bytes, Eigen::Inde
   if (packing.angular_velocities.cols() > 0) packing.angular_velocities.middleCols(first, count) = rows.middleRows<3>(8);
   if (packing.displaced_volumes.size() > 0) packing.displaced_volumes.segment(first, count) = rows.row(11);
   if (packing.bodies.size() > 0) packing.bodies.segment(first, count) = rows.row(12).cast<int>();
+}
+
+PackingArrays handed_over(const Packing& packing, const std::vector<std::vector<int>>& sent, std::vector<int>& received,
+                          const Ranks& ranks) {
+  const std::size_t piece = std::max<std::size_t>(256, 16384 / sent.size());
+  std::vector<Ranks::Bytes> to(sent.size());
+  std::size_t most = 0;
+  for (std::size_t r = 0; r < sent.size(); ++r) {
+    const int size = static_cast<int>(sent[r].size());
+    append(to[r], &size, 1);
+    most = std::max(most, sent[r].size());
+  }
+  most = static_cast<std::size_t>(ranks.largest(static_cast<double>(most)));
+  received.clear();
+  std::vector<Eigen::Index> next{0};
+  for (const Ranks::Bytes& bytes : ranks.hand_over(to)) {
+    received.push_back(values_in<int>(bytes)[0]);
+    next.push_back(next.back() + received.back());
+  }
+  PackingArrays all;
+  resize(all, arrays_of_all(packing, ranks), next.back());
+  for (std::size_t begin = 0; begin < most; begin += piece) {
+    for (std::size_t r = 0; r < sent.size(); ++r) {
+      to[r].clear();
+      for (std::size_t k = begin; k < std::min(begin + piece, sent[r].size()); ++k) append_sphere(to[r], packing, sent[r][k]);
+    }
+    const std::vector<Ranks::Bytes> from = ranks.hand_over(to);
+    for (std::size_t r = 0; r < from.size(); ++r) {
+      if (!from[r].empty()) take_spheres(all, from[r], next[r]);
+      next[r] += spheres_in(from[r]);
+    }
+  }
+  return all;
 }
 
 PackingArrays columns_of(const PackingArrays& packing, const std::vector<int>& columns) {

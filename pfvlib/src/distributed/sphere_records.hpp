@@ -25,6 +25,11 @@ void resize(PackingArrays& packing, const SphereArrays& arrays, Eigen::Index cou
 /// Those of a message into columns `first` and on.
 void take_spheres(PackingArrays& packing, const Ranks::Bytes& bytes, Eigen::Index first);
 
+/// Hands columns of a packing on, `sent[r]` to rank r, in pieces: what comes from rank 0, then from rank 1 and so on, and how
+/// many from each. Collective.
+PackingArrays handed_over(const Packing& packing, const std::vector<std::vector<int>>& sent, std::vector<int>& received,
+                          const Ranks& ranks);
+
 /// These columns of a packing, in this order.
 PackingArrays columns_of(const PackingArrays& packing, const std::vector<int>& columns);
 

@@ -2,6 +2,7 @@
 // LIGGGHTS' and LAMMPS' data files, as write_data writes them and read_data reads them.
 #include "io/packing_formats.hpp"
 #include "io/sphere_table.hpp"
+#include "parallel/one_rank.hpp"
 #include "pfv/error.hpp"
 #include "text/number_text.hpp"
 
@@ -120,7 +121,7 @@ PackingFile read_data_file(const std::string& path, std::string_view text) {
     table->add(lines, words);
   });
   PackingFile file;
-  file.packing = table->arrays(path);
+  file.packing = table->arrays(path, ranks_or_one(nullptr));
   const bool has_room = (header.bounds.upper.array() > header.bounds.lower.array()).all();
   // a tilted box whose periodic sides are not known is no room
   if (has_room && !header.tilted) file.bounds = header.bounds;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/packing_formats.hpp"
 #include "io/sphere_table.hpp"
+#include "parallel/one_rank.hpp"
 #include "pfv/error.hpp"
 #include "text/number_text.hpp"
 
@@ -16,7 +17,7 @@ constexpr std::string_view step_item = "ITEM: TIMESTEP";
 
 /// A snapshot in the text of a dump.
 struct Snapshot {
-  std::size_t begin, end;  ///< from its ITEM: TIMESTEP
+  TextPart part;  ///< from its ITEM: TIMESTEP
   std::optional<std::int64_t> step;
   std::optional<double> time;
 };
@@ -42,16 +43,48 @@ std::size_t begin_of_head(std::string_view text, std::size_t begin, std::optiona
   }
 }
 
-std::vector<Snapshot> snapshots_of(std::string_view text) {
+/// The text from block to block, with enough of it before and behind each place for the head of a snapshot.
+std::vector<Snapshot> snapshots_of(TextSource& source) {
+  constexpr std::size_t block = std::size_t{1} << 20, head = 4096;
   std::vector<Snapshot> snapshots;
-  for (std::size_t begin = text.find(step_item); begin != std::string_view::npos;
-       begin = text.find(step_item, begin + 1)) {
-    Snapshot snapshot{begin, text.size(), integer(line_after(text, begin)), {}};
-    const std::size_t head = begin_of_head(text, begin, snapshot.time);
-    if (!snapshots.empty()) snapshots.back().end = head;
-    snapshots.push_back(snapshot);
+  std::string text;
+  std::size_t before = 0;  // of the source, in front of `text`
+  std::size_t lines = 0, looked = 0;
+  for (bool whole = false; !whole;) {
+    const std::string more = source.part(before + text.size(), block);
+    whole = more.size() < block;
+    text += more;
+    const std::size_t end = whole ? text.size() : text.size() - head;
+    const auto count_to = [&](std::size_t place) {
+      lines += static_cast<std::size_t>(std::count(text.begin() + looked, text.begin() + place, '\n'));
+      looked = place;
+    };
+    for (std::size_t begin = text.find(step_item, looked); begin < end; begin = text.find(step_item, begin + 1)) {
+      count_to(begin);
+      Snapshot snapshot{{before + begin, source.size(), lines}, integer(line_after(text, begin)), {}};
+      const std::size_t top = begin_of_head(text, begin, snapshot.time);
+      if (!snapshots.empty()) snapshots.back().part.end = before + top;
+      snapshots.push_back(snapshot);
+    }
+    count_to(end);
+    const std::size_t passed = looked > head ? looked - head : 0;
+    text.erase(0, passed);
+    before += passed;
+    looked -= passed;
   }
   return snapshots;
+}
+
+/// On all ranks, of which one looks for them. Collective.
+std::vector<Snapshot> snapshots_of(TextSource& source, const Ranks& ranks) {
+  Ranks::Bytes bytes;
+  ranks.together([&] {
+    if (ranks.own() > 0) return;
+    const std::vector<Snapshot> snapshots = snapshots_of(source);
+    if (snapshots.empty()) throw InputError(source.path() + ": has no ITEM: TIMESTEP: write the dump anew");
+    append(bytes, snapshots.data(), snapshots.size());
+  });
+  return values_in<Snapshot>(told_by_first(ranks, bytes));
 }
 
 std::string names_of(const std::vector<Snapshot>& snapshots) {
@@ -73,9 +106,10 @@ bool is_of(const Snapshot& snapshot, const std::optional<std::int64_t>& step, co
 const Snapshot& chosen(const std::string& path, const std::vector<Snapshot>& snapshots, const std::string& name) {
   if (name == "last") return snapshots.back();
   const std::string time_word = "time=";
-  const bool by_time = starts_with(name, time_word);
-  const auto time = by_time ? finite_number(name.substr(time_word.size())) : std::nullopt;
-  const auto step = by_time ? std::nullopt : integer(name);
+  std::optional<double> time;
+  std::optional<std::int64_t> step;
+  if (starts_with(name, time_word)) time = finite_number(name.substr(time_word.size()));
+  else step = integer(name);
   for (auto snapshot = snapshots.rbegin(); snapshot != snapshots.rend(); ++snapshot)
     if (is_of(*snapshot, step, time)) return *snapshot;
   if (step && *step >= 1 && *step <= static_cast<std::int64_t>(snapshots.size()))
@@ -138,17 +172,35 @@ std::optional<PackingBounds> read_bounds(TextLines& lines) {
   return bounds;
 }
 
-SphereTable read_atoms(TextLines& lines, const Columns& columns, std::int64_t atoms, std::size_t characters) {
-  SphereTable table(columns);
-  // A garbled number of atoms must not ask for more memory than the file can fill.
-  table.reserve(std::min(static_cast<std::size_t>(atoms), characters / 8));
+/// What stands in a snapshot before its atoms.
+struct SnapshotHead {
+  std::int64_t atoms = -1;
+  std::optional<PackingBounds> bounds;
+  Columns columns;
+  bool names_a_variable = false;
+  TextPart rows;
+};
+
+/// This rank's lines of atoms.
+SphereTable read_atoms(TextSource& source, const SnapshotHead& head, const LineShare& share) {
+  SphereTable table(head.columns);
+  table.reserve(share.lines);
+  TextLines lines = lines_of(source, share.own);
   Words fields;
-  for (std::int64_t atom = 0; atom < atoms; ++atom) {
-    if (!lines.next() || lines.line().empty())
-      fail_cut_off(lines, "after " + std::to_string(atom) + " of " + std::to_string(atoms) + " atoms");
+  const std::string of_all = " of " + std::to_string(head.atoms) + " atoms";
+  const std::int64_t first = static_cast<std::int64_t>(share.first), all = static_cast<std::int64_t>(share.all);
+  for (std::int64_t atom = first; atom < head.atoms && lines.next(); ++atom) {
+    if (lines.line().empty()) fail_cut_off(lines, "after " + std::to_string(atom) + of_all);
     split_words(lines.line(), fields);
     table.add(lines, fields);
   }
+  if (share.last && all < head.atoms) fail_cut_off(lines, "after " + std::to_string(all) + of_all);
+  if (lines.next_filled()) {
+    if (starts_with(item, lines.line()) || starts_with(lines.line(), item)) fail_cut_off(lines, "in its first line");
+    lines.fail("more lines than the " + std::to_string(head.atoms) + " atoms that the snapshot names: write the dump anew");
+  }
+  if (!lines.ended())
+    lines.fail("the dump ends inside this line: its last number may be cut off; write the dump to its end");
   return table;
 }
 
@@ -178,45 +230,47 @@ bool names_a_variable(const Words& names) {
   });
 }
 
-/// All of a snapshot; `text` ends with it.
-PackingFile read_snapshot(const std::string& path, std::string_view text, const Snapshot& snapshot) {
-  const auto lines_before = static_cast<std::size_t>(
-      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(snapshot.begin), '\n'));
-  const std::string_view own = text.substr(snapshot.begin);
-  TextLines lines(path, own, lines_before);
-  PackingFile file;
-  file.step = snapshot.step;
-  std::int64_t atoms = -1;
+SnapshotHead read_head(TextSource& source, const Snapshot& snapshot) {
+  TextLines lines = lines_of(source, snapshot.part);
+  SnapshotHead head;
   while (lines.next()) {
-    if (starts_with(lines.line(), "ITEM: NUMBER OF ATOMS")) atoms = read_number_of_atoms(lines);
-    if (starts_with(lines.line(), "ITEM: BOX BOUNDS")) file.bounds = read_bounds(lines);
+    if (starts_with(lines.line(), "ITEM: NUMBER OF ATOMS")) head.atoms = read_number_of_atoms(lines);
+    if (starts_with(lines.line(), "ITEM: BOX BOUNDS")) head.bounds = read_bounds(lines);
     if (starts_with(lines.line(), "ITEM: ENTRIES"))
       lines.fail("ITEM: ENTRIES instead of ITEM: ATOMS: a dump of contacts or other pairs; give that of the grains");
     constexpr std::string_view heading = "ITEM: ATOMS";
     if (!starts_with(lines.line(), heading)) continue;
-    if (atoms < 0) lines.fail("no ITEM: NUMBER OF ATOMS before this line: write the dump anew");
-    if (atoms == 0)
-      throw InputError(path + ": the snapshot of step " + std::to_string(snapshot.step.value_or(0)) +
+    if (head.atoms < 0) lines.fail("no ITEM: NUMBER OF ATOMS before this line: write the dump anew");
+    if (head.atoms == 0)
+      throw InputError(source.path() + ": the snapshot of step " + std::to_string(snapshot.step.value_or(0)) +
                        " has no atoms (yet): give a dump of a later step, or choose another of its snapshots with --snapshot");
     Words names;
     split_words(lines.line().substr(heading.size()), names);
-    const Columns columns = find_columns(lines, names, Naming::dump);
-    const SphereTable table = read_atoms(lines, columns, atoms, own.size());
-    if (lines.next_filled()) {
-      if (starts_with(item, lines.line()) || starts_with(lines.line(), item)) fail_cut_off(lines, "in its first line");
-      lines.fail("more lines than the " + std::to_string(atoms) + " atoms that the snapshot names: write the dump anew");
-    }
-    if (atoms > 0 && own.back() != '\n')
-      lines.fail("the dump ends inside this line: its last number may be cut off; write the dump to its end");
-    file.packing = table.arrays(path);
-    make_plain(file.packing, columns.places, file.bounds, path);
-    if (!columns.velocities() && names_a_variable(names))
-      file.remarks.push_back("v_x, v_y, v_z are variables of the script, not velocities, which would be vx, vy, vz: there "
-                             "are none");
-    if (!table.has_ids()) file.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
-    return file;
+    head.columns = find_columns(lines, names, Naming::dump);
+    head.names_a_variable = names_a_variable(names);
+    head.rows = {snapshot.part.begin + lines.taken(), snapshot.part.end, lines.number()};
+    return head;
   }
   fail_cut_off(lines, "before its ITEM: ATOMS");
+}
+
+/// All of a snapshot. Collective.
+PackingFile read_snapshot(TextSource& source, const Snapshot& snapshot, const Ranks& ranks) {
+  SnapshotHead head;
+  ranks.together([&] { head = read_head(source, snapshot); });
+  const LineShare share = share_of_lines(source, head.rows, ranks);
+  SphereTable table(head.columns);
+  ranks.together([&] { table = read_atoms(source, head, share); });
+  PackingFile file;
+  file.step = snapshot.step;
+  file.bounds = head.bounds;
+  file.packing = table.arrays(source.path(), ranks);
+  ranks.together([&] { make_plain(file.packing, head.columns.places, file.bounds, source.path()); });
+  if (!head.columns.velocities() && head.names_a_variable)
+    file.remarks.push_back("v_x, v_y, v_z are variables of the script, not velocities, which would be vx, vy, vz: there "
+                           "are none");
+  if (!table.has_ids()) file.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
+  return file;
 }
 
 /// The unit style that a newer LAMMPS writes first.
@@ -231,21 +285,17 @@ void refuse_other_units(const std::string& path, std::string_view text, double l
 
 }  // namespace
 
-PackingFile read_dump(const std::string& path, std::string_view text, const PackingChoice& choice) {
-  refuse_other_units(path, text, choice.length_unit);
-  if (choice.snapshot == "last") {  // found without looking at the others
-    const std::size_t begin = text.rfind(step_item);
-    if (begin == std::string_view::npos) throw InputError(path + ": has no ITEM: TIMESTEP: write the dump anew");
-    return read_snapshot(path, text, {begin, text.size(), integer(line_after(text, begin)), {}});
-  }
-  const std::vector<Snapshot> snapshots = snapshots_of(text);
-  if (snapshots.empty()) throw InputError(path + ": has no ITEM: TIMESTEP: write the dump anew");
-  const Snapshot& snapshot = chosen(path, snapshots, choice.snapshot);
-  PackingFile file = read_snapshot(path, text.substr(0, snapshot.end), snapshot);
-  file.remarks.push_back("the snapshot is that of step " + std::to_string(snapshot.step.value_or(0)) + ", number " +
-                         std::to_string(&snapshot - snapshots.data() + 1) + " of " + std::to_string(snapshots.size()));
+PackingFile read_dump(TextSource& source, const PackingChoice& choice, const Ranks& ranks) {
+  ranks.together([&] { refuse_other_units(source.path(), source.part(0, 4096), choice.length_unit); });
+  const std::vector<Snapshot> snapshots = snapshots_of(source, ranks);
+  if (choice.snapshot == "last") return read_snapshot(source, snapshots.back(), ranks);
+  const Snapshot* found = nullptr;
+  ranks.together([&] { found = &chosen(source.path(), snapshots, choice.snapshot); });
+  PackingFile file = read_snapshot(source, *found, ranks);
+  file.remarks.push_back("the snapshot is that of step " + std::to_string(found->step.value_or(0)) + ", number " +
+                         std::to_string(found - snapshots.data() + 1) + " of " + std::to_string(snapshots.size()));
   const auto same = std::count_if(snapshots.begin(), snapshots.end(), [&](const Snapshot& other) {
-    return snapshot.step && other.step == snapshot.step;
+    return found->step && other.step == found->step;
   });
   if (same > 1)
     file.remarks.push_back("the dump has that step " + std::to_string(same) +

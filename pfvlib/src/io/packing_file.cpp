@@ -1,43 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pfv/packing_file.hpp"
 
+#include "distributed/even_rows.hpp"
 #include "io/packing_formats.hpp"
+#include "parallel/one_rank.hpp"
 #include "pfv/error.hpp"
 #include "pfv/io.hpp"
 #include "text/number_text.hpp"
 #include "text/text_lines.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <memory>
+#include <utility>
 
 namespace pfv {
 namespace detail {
-
-std::string whole_file(const std::string& path) {
-  const auto fail = [&](const std::string& why) {
-    throw InputError("cannot read packing " + detail::quoted(path) + ": " + why + ": give a table, a LIGGGHTS dump or data file, or points of a VTK file");
-  };
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), &gzclose);
-  if (!file) fail(std::strerror(errno));
-  std::string text;
-  std::size_t used = 0;
-  for (int got = 1; got > 0; used += static_cast<std::size_t>(got)) {
-    text.resize(std::max<std::size_t>(2 * used, 1 << 16));
-    const auto room = static_cast<unsigned>(std::min<std::size_t>(text.size() - used, 1u << 30));
-    got = gzread(file.get(), &text[used], room);
-    int problem = Z_OK;
-    const std::string why = gzerror(file.get(), &problem);
-    if (problem == Z_ERRNO) fail(std::strerror(errno));  // a folder, for one
-    if (got < 0 || problem == Z_BUF_ERROR)
-      fail(problem == Z_BUF_ERROR ? "the packed file is cut off" : "it cannot be unpacked (" + why + ")");
-  }
-  text.resize(used);
-  return text;
-}
 
 std::optional<double> named_length_unit(std::string_view unit) {
   struct Unit {
@@ -105,18 +81,59 @@ bool is_data_file(std::string_view text) {
   return false;
 }
 
-PackingFile read_any(const std::string& path, std::string_view text, const PackingChoice& choice) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (starts_with(text, byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+enum class Kind { table, dump, data, legacy_vtk, xml_vtk };
+
+/// Of a text that begins so. Throws InputError for one without spheres.
+Kind kind_of(const std::string& path, std::string_view text, const PackingChoice& choice) {
   const std::string_view begin = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-  if (starts_with(begin, "ITEM:")) return read_dump(path, text, choice);
+  if (starts_with(begin, "ITEM:")) return Kind::dump;
   if (choice.snapshot != "last")
     throw InputError(path + ": is no dump, so it has no snapshot " + detail::quoted(choice.snapshot) + ": leave --snapshot away");
-  if (is_xml_vtk(begin)) return read_xml_vtk(path, text);
-  if (starts_with(begin, "# vtk DataFile")) return read_legacy_vtk(path, text);
+  if (is_xml_vtk(begin)) return Kind::xml_vtk;
+  if (starts_with(begin, "# vtk DataFile")) return Kind::legacy_vtk;
   if (const std::string kind = other_kind(begin); !kind.empty()) throw InputError(path + ":1: " + kind);
-  if (is_data_file(text)) return read_data_file(path, text);
-  return read_table(path, text, choice.length_unit);
+  return is_data_file(text) ? Kind::data : Kind::table;
+}
+
+/// As much of a text as its kind follows from, behind blanks.
+std::string begin_of(TextSource& source) {
+  constexpr std::size_t enough = 4096;
+  for (std::size_t count = 2 * enough;; count *= 2) {
+    std::string text = source.part(0, count);
+    if (text.size() < count || text.find_first_not_of(" \t\r\n") < count - enough) return text;
+  }
+}
+
+/// Tells all ranks what rank 0 has found beside the spheres. Collective.
+void share_rest(PackingFile& file, const Ranks& ranks) {
+  Ranks::Bytes bytes;
+  if (file.bounds) append(bytes, &*file.bounds, 1);
+  for (const PackingBounds& bounds : values_in<PackingBounds>(told_by_first(ranks, bytes))) file.bounds = bounds;
+  std::string text;
+  for (const std::string& remark : file.remarks) text += remark + '\n';
+  const Ranks::Bytes told = told_by_first(ranks, {text.begin(), text.end()});
+  TextLines lines("", {told.data(), told.size()});
+  for (file.remarks.clear(); lines.next();) file.remarks.emplace_back(lines.line());
+}
+
+/// One rank reads, and hands all but its share on. Collective.
+PackingFile read_by_first(TextSource& source, Kind kind, const Ranks& ranks) {
+  PackingFile file;
+  ranks.together([&] {
+    if (ranks.own() > 0) return;
+    const std::string text = source.take();
+    file = (kind == Kind::data ? read_data_file : kind == Kind::xml_vtk ? read_xml_vtk : read_legacy_vtk)(source.path(), text);
+  });
+  if (ranks.count() > 1) share_rest(file, ranks);
+  return file;
+}
+
+PackingFile read_any(TextSource& source, const PackingChoice& choice, const Ranks& ranks) {
+  Kind kind = Kind::table;
+  ranks.together([&] { kind = kind_of(source.path(), begin_of(source), choice); });
+  if (kind == Kind::dump) return read_dump(source, choice, ranks);
+  if (kind == Kind::table) return read_table(source, choice.length_unit, ranks);
+  return read_by_first(source, kind, ranks);
 }
 
 void apply_unit(PackingFile& file, double unit) {
@@ -142,12 +159,11 @@ double length_unit(const std::string& text) {
   return *metres;
 }
 
-PackingFile read_packing_file(const std::string& path, const PackingChoice& choice) {
-  std::string content = detail::whole_file(path);
-  if (content.find('\n') == std::string::npos)  // lines of an old Mac, or one line
-    std::replace(content.begin(), content.end(), '\r', '\n');
-  PackingFile file = detail::read_any(path, content, choice);
+PackingFile read_packing_file(const std::string& path, const PackingChoice& choice, const Ranks* given) {
+  const Ranks& ranks = ranks_or_one(given);
+  PackingFile file = detail::read_any(*detail::open_text(path, ranks), choice, ranks);
   detail::apply_unit(file, choice.length_unit);
+  file.packing = evenly_divided(std::move(file.packing), ranks);
   return file;
 }
 

@@ -114,88 +114,116 @@ void explain_fields(const TextLines& lines, char separator, std::size_t fields, 
     lines.fail(counts + ", as of numbers with a comma: write a decimal point");
 }
 
-/// Header and lines of a table.
-class TableReader {
- public:
-  TableReader(const std::string& path, std::string_view text, double length_unit)
-      : path_(path), text_(text), lines_(path, text), length_unit_(length_unit) {}
+/// What the lines of a table are made of.
+struct TableHead {
+  Columns columns;
+  char separator = ' ';
+  std::size_t names = 0;
+  bool last_name_empty = false;  ///< for a separator behind all names
+  TextPart rows;
+  std::vector<std::string> remarks;
+};
 
-  PackingFile read() {
+/// For a separator behind the last field of lines, or of the names, alone.
+void fit_to_names(Words& fields, const TableHead& head) {
+  if (fields.size() == head.names + 1 && fields.back().empty()) fields.pop_back();
+  if (fields.size() + 1 == head.names && head.last_name_empty) fields.emplace_back();
+}
+
+/// Header of a table.
+class HeadReader {
+ public:
+  HeadReader(TextSource& source, double length_unit)
+      : path_(source.path()), lines_(lines_of(source, {0, source.size(), 0})), length_unit_(length_unit) {
+    head_.rows.end = source.size();
+  }
+
+  TableHead read() {
     find_names();
-    SphereTable table(find_columns(lines_, names_));
-    table.reserve(static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n')));
-    for (bool more = first_is_data_ || next(); more; more = next()) {
-      if (fields_.size() != names_.size()) explain_fields(lines_, separator_, fields_.size(), names_.size());
-      table.add(lines_, fields_);
-    }
-    file_.packing = table.arrays(path_);
-    if (!table.has_ids()) file_.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
-    if (ends_in_a_number())
-      file_.remarks.push_back("the last line has no end; its last number may be cut off");
-    return std::move(file_);
+    head_.names = names_.size();
+    head_.last_name_empty = names_.back().empty();
+    head_.columns = find_columns(lines_, names_);
+    head_.rows.begin = first_is_data_ ? lines_.begin() : lines_.taken();
+    head_.rows.lines_before = lines_.number() - (first_is_data_ ? 1 : 0);
+    return std::move(head_);
   }
 
  private:
-  /// The next line that is no comment; false at the end.
-  bool next() {
-    do
-      if (!lines_.next_filled()) return false;
-    while (is_comment(lines_.line()));
-    split_fields(lines_.line(), separator_, fields_);
-    fit_to_names();
-    return true;
-  }
-
-  /// For a separator behind the last field of lines, or of the names, alone.
-  void fit_to_names() {
-    if (fields_.size() == names_.size() + 1 && fields_.back().empty()) fields_.pop_back();
-    if (fields_.size() + 1 == names_.size() && names_.back().empty()) fields_.emplace_back();
-  }
-
-  /// Whether the file's last character is a number's: nothing tells that this is whole.
-  bool ends_in_a_number() const {
-    const char last = text_.back();
-    return ((last >= '0' && last <= '9') || last == '.') && !is_comment(lines_.line());
-  }
-
   /// From the first line that is no comment, or, where that holds numbers, from the comments above.
   void find_names() {
     do {
       if (!lines_.next_filled())
         throw InputError(path_ + ": is empty: give a header id,x,y,z,radius and one line a sphere");
       if (!is_comment(lines_.line())) break;
-      if (Words names = names_in_comment(lines_.line()); !names.empty()) names_ = std::move(names);
+      if (names_in_comment(lines_.line()).empty()) continue;
+      comment_ = lines_.line();
+      names_ = names_in_comment(comment_);
     } while (true);
-    separator_ = separator_of(lines_.line());
-    split_fields(lines_.line(), separator_, fields_);
-    Words filled = fields_;
+    head_.separator = separator_of(lines_.line());
+    Words fields;
+    split_fields(lines_.line(), head_.separator, fields);
+    Words filled = fields;
     if (filled.back().empty()) filled.pop_back();
     first_is_data_ = all_numbers(filled);
-    if (!first_is_data_) names_ = fields_;
-    else if (names_.empty()) fields_ = filled;
-    else fit_to_names();
-    if (names_.empty() && fields_.size() == 4) {
+    if (!first_is_data_) names_ = fields;
+    if (names_.empty() && filled.size() == 4) {
       names_ = {"x", "y", "z", "r"};
-      file_.remarks.push_back("there are no names of columns: the four were taken as x, y, z and radius");
+      head_.remarks.push_back("there are no names of columns: the four were taken as x, y, z and radius");
     }
-    if (names_.empty()) fail_without_header(lines_, fields_.size());
+    if (names_.empty()) fail_without_header(lines_, filled.size());
     refuse_units(lines_, names_, length_unit_);
   }
 
-  std::string path_;
-  std::string_view text_;
+  std::string path_, comment_;
   TextLines lines_;
   double length_unit_;
-  char separator_ = ' ';
-  Words names_, fields_;
+  Words names_;
   bool first_is_data_ = false;  // of the line that find_names() stops at
-  PackingFile file_;
+  TableHead head_;
 };
+
+/// The next line that is no comment; false at the end.
+bool next_row(TextLines& lines, const TableHead& head, Words& fields) {
+  do
+    if (!lines.next_filled()) return false;
+  while (is_comment(lines.line()));
+  split_fields(lines.line(), head.separator, fields);
+  fit_to_names(fields, head);
+  return true;
+}
+
+/// Whether the text's last character is a number's: nothing tells that this is whole.
+bool ends_in_a_number(TextSource& source, const TextLines& lines) {
+  if (lines.ended() || lines.line().empty() || is_comment(lines.line())) return false;
+  const std::string last = source.part(source.size() - 1, 1);
+  return !last.empty() && ((last[0] >= '0' && last[0] <= '9') || last[0] == '.');
+}
 
 }  // namespace
 
-PackingFile read_table(const std::string& path, std::string_view text, double length_unit) {
-  return TableReader(path, text, length_unit).read();
+PackingFile read_table(TextSource& source, double length_unit, const Ranks& ranks) {
+  TableHead head;
+  ranks.together([&] { head = HeadReader(source, length_unit).read(); });
+  const LineShare share = share_of_lines(source, head.rows, ranks);
+  SphereTable table(head.columns);
+  bool may_be_cut_off = false;
+  ranks.together([&] {
+    table.reserve(share.lines);
+    TextLines lines = lines_of(source, share.own);
+    Words fields;
+    while (next_row(lines, head, fields)) {
+      if (fields.size() != head.names) explain_fields(lines, head.separator, fields.size(), head.names);
+      table.add(lines, fields);
+    }
+    may_be_cut_off = ends_in_a_number(source, lines);
+  });
+  PackingFile file;
+  file.remarks = head.remarks;
+  file.packing = table.arrays(source.path(), ranks);
+  if (!table.has_ids()) file.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
+  if (ranks.any(may_be_cut_off))
+    file.remarks.push_back("the last line has no end; its last number may be cut off");
+  return file;
 }
 
 }  // namespace pfv::detail

@@ -2,6 +2,7 @@
 // Spheres as points of VTK files: legacy ones as LIGGGHTS writes them, .vtu and .vtp as ParaView, YADE and we do.
 #include "io/packing_formats.hpp"
 #include "io/sphere_table.hpp"
+#include "parallel/one_rank.hpp"
 #include "pfv/error.hpp"
 #include "text/number_text.hpp"
 
@@ -81,7 +82,7 @@ PackingFile spheres_of(const std::string& path, const Points& points) {
   for (Eigen::Index k = 0; k < n; ++k) packing.ids[k] = ids ? std::llround(ids->values[k]) : k + 1;
   if (!ids) file.remarks.push_back("there are no ids: the spheres are numbered from 1 in their order");
   require_finite(path, packing);
-  refuse_equal_ids(path, {packing.ids.data(), packing.ids.data() + n}, {});
+  refuse_equal_ids(path, {packing.ids.data(), packing.ids.data() + n}, {}, ranks_or_one(nullptr));
   return file;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/sphere_table.hpp"
 
+#include "distributed/even_rows.hpp"
 #include "pfv/error.hpp"
 #include "text/number_text.hpp"
 
@@ -8,6 +9,7 @@
 #include <cctype>
 #include <cmath>
 #include <initializer_list>
+#include <numeric>
 #include <utility>
 
 namespace pfv::detail {
@@ -132,7 +134,7 @@ void SphereTable::add(const TextLines& lines, const Words& fields) {
   if (fields.size() != columns_.fields)
     lines.fail("has " + std::to_string(fields.size()) + " fields instead of " +
                std::to_string(columns_.fields) + ": give one for each column");
-  std::int64_t number = static_cast<std::int64_t>(ids_.size()) + 1;
+  std::int64_t number = 0;
   if (columns_.ids()) {
     const std::string_view text = fields[columns_.place[id]];
     const auto given = integer(text);
@@ -157,14 +159,28 @@ void SphereTable::require_equal_sizes(const TextLines& lines, const Words& field
              ": keep the column that is meant, or name the other differently");
 }
 
-PackingArrays SphereTable::arrays(const std::string& path) const {
-  if (ids_.empty()) throw InputError(path + ": holds no spheres: give at least one line below the header");
-  refuse_equal_ids(path, ids_, line_numbers_);
+namespace {
+
+/// Of spheres of which each rank has so many, those of rank 0 first.
+Packing::Ids numbers_from_one(Eigen::Index own, const Ranks& ranks) {
+  Packing::Ids ids(own);
+  std::iota(ids.begin(), ids.end(), rows_before(own, ranks) + 1);
+  return ids;
+}
+
+}  // namespace
+
+PackingArrays SphereTable::arrays(const std::string& path, const Ranks& ranks) const {
+  const bool any = ranks.any(!ids_.empty());
+  ranks.together([&] {
+    if (!any) throw InputError(path + ": holds no spheres: give at least one line below the header");
+  });
+  if (has_ids()) refuse_equal_ids(path, ids_, line_numbers_, ranks);
   const auto n = static_cast<Eigen::Index>(ids_.size());
   const auto rows = static_cast<Eigen::Index>(values_a_sphere());
   const Eigen::Map<const Eigen::MatrixXd> values(values_.data(), rows, n);
   PackingArrays packing;
-  packing.ids = Eigen::Map<const Packing::Ids>(ids_.data(), n);
+  packing.ids = has_ids() ? Packing::Ids(Eigen::Map<const Packing::Ids>(ids_.data(), n)) : numbers_from_one(n, ranks);
   packing.positions = values.topRows<3>();
   packing.radii = values.row(3).transpose();
   if (columns_.velocities()) packing.velocities = values.middleRows<3>(4);
@@ -183,18 +199,58 @@ double SphereTable::value(const TextLines& lines, const Words& fields, int colum
   return column == radius && columns_.diameters ? 0.5 * *number : *number;
 }
 
-void refuse_equal_ids(const std::string& path, const std::vector<std::int64_t>& ids,
-                      const std::vector<std::size_t>& lines) {
-  std::vector<std::pair<std::int64_t, std::size_t>> order(ids.size());
-  for (std::size_t k = 0; k < ids.size(); ++k) order[k] = {ids[k], lines.empty() ? k : lines[k]};
+namespace {
+
+/// An id and its place in the file.
+struct PlacedId {
+  std::int64_t id;
+  std::size_t place;
+  bool operator<(const PlacedId& other) const { return id != other.id ? id < other.id : place < other.place; }
+};
+
+/// Sorted; on several ranks each rank has all of an id that any has read, and about as many ids as the others.
+std::vector<PlacedId> sorted(const std::vector<std::int64_t>& ids, const std::vector<std::size_t>& lines,
+                             const Ranks& ranks) {
+  std::vector<PlacedId> order;
+  const auto placed = [&](std::size_t k) { return PlacedId{ids[k], lines.empty() ? k : lines[k]}; };
+  if (ranks.count() == 1) {
+    order.resize(ids.size());
+    for (std::size_t k = 0; k < ids.size(); ++k) order[k] = placed(k);
+  } else {
+    std::vector<Ranks::Bytes> to(ranks.count());
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      const PlacedId one = placed(k);
+      append(to[static_cast<std::uint64_t>(one.id) % to.size()], &one, 1);
+    }
+    to = ranks.hand_over(to);
+    for (const Ranks::Bytes& bytes : to) {
+      const std::vector<PlacedId> part = values_in<PlacedId>(bytes);
+      order.insert(order.end(), part.begin(), part.end());
+    }
+  }
   std::sort(order.begin(), order.end());
-  const auto twin = std::adjacent_find(order.begin(), order.end(),
-                                       [](auto& a, auto& b) { return a.first == b.first; });
-  if (twin == order.end()) return;
-  const std::string number = std::to_string(twin->first);
-  if (lines.empty()) throw InputError(path + ": id " + number + " comes twice: give each sphere its own");
-  throw InputError(path + ":" + std::to_string((twin + 1)->second) + ": id " + number + " stands in line " +
-                   std::to_string(twin->second) + " too: give each sphere its own");
+  return order;
+}
+
+}  // namespace
+
+void refuse_equal_ids(const std::string& path, const std::vector<std::int64_t>& ids,
+                      const std::vector<std::size_t>& lines, const Ranks& ranks) {
+  const std::vector<PlacedId> order = sorted(ids, lines, ranks);
+  const auto twin = std::adjacent_find(order.begin(), order.end(), [](auto& a, auto& b) { return a.id == b.id; });
+  Ranks::Bytes bytes;
+  if (twin != order.end()) append(bytes, &*twin, 2);
+  std::vector<std::array<PlacedId, 2>> twins;
+  for (const Ranks::Bytes& found : ranks.gather(bytes))
+    for (const auto& two : values_in<std::array<PlacedId, 2>>(found)) twins.push_back(two);
+  ranks.together([&] {
+    if (twins.empty()) return;
+    const auto [first, second] = *std::min_element(twins.begin(), twins.end());
+    const std::string number = std::to_string(first.id);
+    if (lines.empty()) throw InputError(path + ": id " + number + " comes twice: give each sphere its own");
+    throw InputError(path + ":" + std::to_string(second.place) + ": id " + number + " stands in line " +
+                     std::to_string(first.place) + " too: give each sphere its own");
+  });
 }
 
 }  // namespace pfv::detail

@@ -2,6 +2,7 @@
 // Spheres as columns of a file: which column is what, and their values line by line.
 #pragma once
 
+#include "parallel/ranks.hpp"
 #include "pfv/packing.hpp"
 #include "text/text_lines.hpp"
 
@@ -65,8 +66,9 @@ class SphereTable {
   void reserve(std::size_t spheres);
   void add(const TextLines& lines, const Words& fields);
   bool has_ids() const { return columns_.ids(); }
-  /// Throws InputError for none at all and for an id that comes twice.
-  PackingArrays arrays(const std::string& path) const;
+  /// Throws InputError where no rank has any, and for an id that comes twice. Without ids the spheres of all ranks are
+  /// numbered from 1. Collective.
+  PackingArrays arrays(const std::string& path, const Ranks& ranks) const;
 
  private:
   std::size_t values_a_sphere() const { return 4 + 3 * columns_.velocities() + 3 * columns_.spins(); }
@@ -79,8 +81,9 @@ class SphereTable {
   std::vector<double> values_;  // those read, of one sphere after the other
 };
 
-/// Throws InputError where two spheres have one id; `lines`: where in the file each stands, or empty.
+/// Throws InputError where two spheres, of whatever ranks, have one id; `lines`: where in the file each stands, or empty.
+/// Collective.
 void refuse_equal_ids(const std::string& path, const std::vector<std::int64_t>& ids,
-                      const std::vector<std::size_t>& lines);
+                      const std::vector<std::size_t>& lines, const Ranks& ranks);
 
 }  // namespace pfv::detail

@@ -3,6 +3,7 @@
 
 #include "pfv/error.hpp"
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,16 +28,25 @@ inline std::string quoted(std::string_view text) {
 /// The lines of a text one after the other, without surrounding blanks, and where we are.
 class TextLines {
  public:
+  /// What is left of a text's last piece, a part of a line, with the next piece behind it; no longer at the end.
+  using More = std::function<std::string_view(std::string_view rest)>;
+
   TextLines(std::string file, std::string_view text, std::size_t lines_before = 0)
       : file_(std::move(file)), rest_(text), number_(lines_before) {}
+  /// Of a text that comes in pieces: a line is there until the next one is asked for.
+  TextLines(std::string file, More more, std::size_t lines_before)
+      : file_(std::move(file)), more_(std::move(more)), number_(lines_before) {}
 
   /// Steps to the next line; false at the end.
   bool next() {
+    const std::size_t end = find_end();
     if (rest_.empty()) return false;
-    const std::size_t end = rest_.find('\n');
     ended_ = end != std::string_view::npos;
     line_ = trimmed(rest_.substr(0, end));
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    const std::size_t size = ended_ ? end + 1 : rest_.size();
+    rest_.remove_prefix(size);
+    begin_ = taken_;
+    taken_ += size;
     ++number_;
     return true;
   }
@@ -49,16 +59,32 @@ class TextLines {
 
   std::string_view line() const { return line_; }
   std::size_t number() const { return number_; }
+  /// Characters of the text before this line, and with it and its end.
+  std::size_t begin() const { return begin_; }
+  std::size_t taken() const { return taken_; }
   /// False for a last line that nothing ends, as where the file is cut off.
   bool ended() const { return ended_; }
   std::string place() const { return file_ + ":" + std::to_string(number_) + ": "; }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(place() + what); }
 
  private:
+  std::size_t find_end() {
+    std::size_t end = rest_.find('\n');
+    while (end == std::string_view::npos && more_ && !all_) {
+      const std::size_t known = rest_.size();
+      rest_ = more_(rest_);
+      all_ = rest_.size() == known;
+      end = rest_.find('\n', known);
+    }
+    return end;
+  }
+
   std::string file_;
   std::string_view rest_, line_;
-  std::size_t number_;
+  More more_;
+  std::size_t number_, begin_ = 0, taken_ = 0;
   bool ended_ = true;
+  bool all_ = false;  ///< no more comes
 };
 
 /// Splits at every `separator` and trims; into `fields`, whose memory is used again.
