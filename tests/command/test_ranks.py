@@ -164,8 +164,7 @@ class Ranks(CommandTest):
             lines = file.read().splitlines()
         (self.folder / "twice.csv").write_text("\n".join([*lines, lines[7]]) + "\n")
         (self.folder / "no_ids.csv").write_text("\n".join(line.split(",", 1)[1] for line in lines))
-        self.run_pfv("convert", "no_ids.csv", "points.vtu")
-        for packing, box in (("twice.csv", UNIT_BOX), ("no_ids.csv", ["--box", "auto"]), ("points.vtu", UNIT_BOX)):
+        for packing, box in (("twice.csv", UNIT_BOX), ("no_ids.csv", ["--box", "auto"])):
             options = ["--packing", packing, *box, *THROUGH_FLOW, "--solver", "amg"]
             one, all_ = self.run_pfv("solve", *options), self.on_ranks(3, *options)
             own = [line for line in all_.stderr.splitlines() if line.startswith("pfv: ")]

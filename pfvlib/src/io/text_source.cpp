@@ -39,12 +39,8 @@ std::size_t read_packed(const std::string& path, gzFile file, char* to, std::siz
 class HeldText final : public TextSource {
  public:
   HeldText(const std::string& path, gzFile file) : TextSource(path) {
-    std::size_t used = 0;
-    for (std::size_t got = 1; got > 0; used += got) {
-      text_.resize(std::max<std::size_t>(2 * used, 1 << 16));
-      got = read_packed(path, file, &text_[used], text_.size() - used);
-    }
-    text_.resize(used);
+    std::string piece(block, ' ');
+    while (const std::size_t got = read_packed(path, file, piece.data(), piece.size())) text_.append(piece, 0, got);
   }
 
  private:
