@@ -166,6 +166,21 @@ TEST_F(SharedReading, SaysOfCutAndGarbledFilesWhatOneRankSays) {
   expect_as_alone(3);
 }
 
+/// It can be read once only.
+TEST_F(SharedReading, NoPipe) {
+  fs::create_symlink("/dev/null", path());
+  support::on_threads(2, [&](const pfv::Ranks& ranks) {
+    std::string refusal;
+    try {
+      pfv::read_packing_file(path(), {}, &ranks);
+    } catch (const pfv::InputError& error) {
+      refusal = error.what();
+    }
+    EXPECT_NE(refusal.find("this is a pipe or a device"), std::string::npos) << refusal;
+  });
+  EXPECT_NE(alone("last").refusal.find("is empty"), std::string::npos);
+}
+
 /// Of many blocks, with places and lines that are known.
 TEST_F(SharedReading, LongFiles) {
   constexpr int many = 16000;

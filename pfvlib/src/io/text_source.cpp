@@ -111,9 +111,9 @@ class PackedText final : public TextSource {
   std::size_t place_ = 0;
 };
 
-bool is_regular(const std::string& path) {
+bool is_of(const std::string& path, mode_t kind) {
   struct stat state;
-  return ::stat(path.c_str(), &state) == 0 && S_ISREG(state.st_mode);
+  return ::stat(path.c_str(), &state) == 0 && (state.st_mode & S_IFMT) == kind;
 }
 
 }  // namespace
@@ -166,7 +166,9 @@ void TextSource::look(const Ranks& ranks) {
   });
   const bool unlike = ranks.largest(stored) != -ranks.largest(-stored);
   ranks.together([&] {
-    if (unlike) fail("its size is not the same for all ranks: give a file that all of them see and that nothing writes to");
+    if (unlike)
+      throw InputError(path_ + ": its size is not the same for all ranks: give a file that all of them see and that nothing "
+                       "writes to");
   });
   Ranks::Bytes bytes;
   append(bytes, &size_, 1);
@@ -178,13 +180,15 @@ std::unique_ptr<TextSource> open_text(const std::string& path, const Ranks& rank
   ranks.together([&] {
     GzFile file(gzopen(path.c_str(), "rb"), &gzclose);
     if (!file) fail_to_read(path, std::strerror(errno));
-    const bool plain = is_regular(path) && gzdirect(file.get());
-    if (plain)
+    const bool regular = is_of(path, S_IFREG), shared = ranks.count() > 1;
+    if (shared && !regular && !is_of(path, S_IFDIR))
+      throw InputError(path + ": several ranks read parts of a file, and this is a pipe or a device: write it to a file first");
+    if (regular && gzdirect(file.get()))
       source = std::make_unique<PlainText>(path);
-    else if (ranks.count() > 1 && is_regular(path))
+    else if (shared && regular)
       source = std::make_unique<PackedText>(path, std::move(file));
     else
-      source = std::make_unique<HeldText>(path, file.get());
+      source = std::make_unique<HeldText>(path, file.get());  // of a folder there is none
   });
   source->look(ranks);
   return source;
