@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of doc/scaling.md:  doc/scaling.py [solve] [coupled] [runs] [million]
+"""The tables of doc/scaling.md:  doc/scaling.py [solve] [coupled] [runs] [agreement] [million]
 
 `pfv solve` of dense packings on several ranks, and on one from 25 000 grains on; 50 coupled steps of LIGGGHTS on one and
-several ranks; three small coupled runs to their end, and how far they differ (tests/coupled/coupled_runs.py); all of it
+several ranks; three small coupled runs to their end, and how far they differ (tests/coupled/coupled_runs.py); by how much several ranks differ from
+one on many packings (rank_agreement.py); all of it
 without a word. With `million` up to a million grains, which takes 9 GB. Every packing is made of
 mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some minutes;
 `coupled million` 20.
@@ -20,12 +21,14 @@ import numpy
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.append(str(ROOT / "tests/coupled"))
 from coupled_runs import Runs
+import rank_agreement
 PAGE = ROOT / "doc/scaling.md"
 PFV, MAKE, LIGGGHTS = (ROOT / "build/bin" / name for name in ("pfv", "pfv_dense_packing", "liggghts-pfv"))
 MPIRUN = [os.environ.get("PFV_MPIRUN", "mpirun"), "--allow-run-as-root", "--oversubscribe", "--mca",
           "mpi_yield_when_idle", "1"]
 GRAINS = 25000
 SIZES = {25000: (1, 1, 1), 100000: (2, 2, 1), 400000: (4, 2, 2)}
+SHARED = (2, 2, 2)  # what several ranks share
 MILLION = {1000000: (5, 4, 2)}
 RANKS = (1, 2, 4, 8)
 TOLERANCE = "1e-10"
@@ -87,7 +90,7 @@ PHASES = ["triangulate, s", "throats", "hierarchy", "solve", "forces", "in all"]
 def by_ranks(packings, empty):
     rows, expected = [], None
     for ranks in RANKS:
-        report, forces = packings.solve(SIZES[100000], ranks)
+        report, forces = packings.solve(SHARED, ranks)
         expected = forces if expected is None else expected
         apart = numpy.linalg.norm(forces - expected, axis=1)
         rms = numpy.sqrt((expected ** 2).sum(axis=1).mean())
@@ -212,6 +215,13 @@ def runs(folder):
     return table(["what is observed", "one rank", "four other orders of the grains", "the kept factor", "2 ranks", "4 ranks"], rows)
 
 
+def agreement(folder):
+    dense = numpy.loadtxt(subprocess.run([MAKE, "400"], capture_output=True, text=True, check=True).stdout.splitlines(),
+                          delimiter=",", skiprows=1, usecols=(1, 2, 3, 4))
+    return table(["packing", "amg: forces, rms", "worst grain", "permeability", "mumps: forces, rms", "worst grain", "permeability"],
+                 rank_agreement.rows(folder, PFV, MPIRUN, dense))
+
+
 def replace(name, text):
     page = PAGE.read_text()
     begin, end = f"<!-- {name}: made by doc/scaling.py -->\n", "\n<!-- end -->"
@@ -230,14 +240,16 @@ def memory_of_few(folder):
 
 def main():
     words = set(sys.argv[1:])
-    if words - {"solve", "coupled", "runs", "million"}:
+    if words - {"solve", "coupled", "runs", "agreement", "million"}:
         sys.exit(__doc__)
     million = MILLION if "million" in words else {}
-    parts = words - {"million"} or {"solve", "coupled", "runs"}
+    parts = words - {"million"} or {"solve", "coupled", "runs", "agreement"}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         if "runs" in parts:
             replace("runs", runs(folder))
+        if "agreement" in parts:
+            replace("agreement", agreement(folder))
         packings = Packings(folder) if parts & {"solve", "coupled"} else None
         if "solve" in parts:
             empty = memory_of_few(folder)

@@ -23,8 +23,9 @@ std::string FixPfv::needs_one_rank() const {
   if (settings_.model != pfv::Model::pores) return "model darcy_grid";
   if (settings_.steps.coupling == pfv::Coupling::implicit) return "coupling implicit";
   if (options.volume_rates == pfv::VolumeRates::geometric) return "volume_rates geometric";
-  if (options.solver != pfv::SolverKind::amg && options.solver != pfv::SolverKind::automatic)
-    return std::string("solver ") + name_of(options.solver);
+  for (const pfv::SolverAbilities& solver : pfv::Names<pfv::SolverKind>::all)
+    if (solver.value == options.solver && solver.value != pfv::SolverKind::automatic && !solver.shared_by_ranks)
+      return std::string("solver ") + solver.name;
   return {};
 }
 

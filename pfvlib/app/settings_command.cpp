@@ -132,15 +132,15 @@ void write_fix_syntax(std::ostream& out) {
 
 void write_solver_table(std::ostream& out) {
   out << "| `--solver` | symbolic factorisation | factorisation, or preconditioner | solves | `--ordering` | `--tolerance` | "
-         "threads share it | rebuilds in the background | mixed precision | implicit steps |\n"
-         "|--|--|--|--|--|--|--|--|--|--|\n";
+         "threads share it | rebuilds in the background | several ranks share it | mixed precision | implicit steps |\n"
+         "|--|--|--|--|--|--|--|--|--|--|--|\n";
   const auto yes_or_no = [](bool ability) { return ability ? "yes" : "no"; };
   for (const SolverAbilities& solver : Names<SolverKind>::all) {
     if (solver.value == SolverKind::automatic) continue;
     out << "| `" << solver.name << '`' << (resolved(SolverKind::automatic) == solver.value ? " (`auto`)" : "") << " | "
         << code(solver.analysed) << " | " << code(solver.factored) << " | " << solver.solved << " | " << orderings_of(solver)
         << " | " << (solver.is_iterative ? detail::number_text(solver.tolerance) : none);
-    for (const bool ability : {solver.shares_work, solver.factors_beside_steps, solver.mixed_precision, solver.implicit_steps})
+    for (const bool ability : {solver.shares_work, solver.factors_beside_steps, solver.shared_by_ranks, solver.mixed_precision, solver.implicit_steps})
       out << " | " << yes_or_no(ability);
     out << " |\n";
   }

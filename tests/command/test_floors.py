@@ -25,7 +25,7 @@ class Floors(unittest.TestCase):
 
     def test_libraries_are_included_in_one_room_each(self):
         for library, rooms in (("CGAL/", {"network"}), ("Amesos2", {"solve"}), ("Tpetra", {"solve"}),
-                               ("HYPRE", {"solve"}), ("mpi.h", {"parallel"})):
+                               ("HYPRE", {"solve"}), ("dmumps", {"solve"}), ("mpi.h", {"parallel"})):
             found = {file.parent.name for file in SOURCE.glob("*/*.?pp")
                      if f"#include <{library}" in file.read_text()}
             self.assertTrue(found, library)

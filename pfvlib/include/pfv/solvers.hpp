@@ -19,7 +19,7 @@ struct Names<OrderingKind> {
        {OrderingKind::amd, "amd"}}};
 };
 
-/// Direct solvers behind Amesos2: supernodal (`automatic`), CHOLMOD's symbolic factorisation with numeric
+/// Direct solvers, behind Amesos2 but for mumps: supernodal (`automatic`), CHOLMOD's symbolic factorisation with numeric
 /// one and solves of this library; cholmod, CHOLMOD's own; tacho, Trilinos' sparse Cholesky; klu2, its plain
 /// sparse LU; mumps (unless CMake's PFV_WITH_MUMPS is off). Iterative ones: amg, conjugate gradients with
 /// hypre's algebraic multigrid; cg, with incomplete Cholesky; gauss_seidel with over-relaxation.
@@ -37,6 +37,7 @@ struct SolverAbilities {
   bool takes_orderings;       ///< geometric, metis and amd; if not, its own at most
   bool shares_work;           ///< threads share factorisation and solves
   bool factors_beside_steps;  ///< networks may be rebuilt in the background
+  bool shared_by_ranks;       ///< several ranks may solve together
   bool mixed_precision;
   bool implicit_steps;  ///< solves the matrix of implicit steps, which is quasi-definite
   bool is_iterative;    ///< ends at a tolerance
@@ -49,26 +50,26 @@ template <>
 struct Names<SolverKind> {
   static constexpr const char* what = "solver";
   // solver, name, analysed, factored, solved by; own ordering; takes orderings, shares work, factors beside steps,
-  // mixed precision, implicit steps, iterative, tolerance
+  // shared by ranks, mixed precision, implicit steps, iterative, tolerance
   static constexpr std::array<SolverAbilities, 9> all{
-      {{SolverKind::automatic, "auto", nullptr, nullptr, nullptr, OrderingKind::automatic, false, false, false, false,
-        false, false, 0.0},  // stands for another: abilities_of
-       {SolverKind::supernodal, "supernodal", "CHOLMOD", "pfv", "pfv", OrderingKind::geometric, true, true, true,
-        true, true, false, 0.0},
-       {SolverKind::cholmod, "cholmod", "CHOLMOD", "CHOLMOD", "CHOLMOD", OrderingKind::geometric, true, false, false,
-        false, false, false, 0.0},
-       {SolverKind::tacho, "tacho", "Tacho", "Tacho", "Tacho", OrderingKind::metis, true, false, false, false, false,
-        false, 0.0},
-       {SolverKind::klu2, "klu2", "KLU2", "KLU2", "KLU2", OrderingKind::amd, false, false, false, false, false,
-        false, 0.0},
-       {SolverKind::mumps, "mumps", "MUMPS", "MUMPS", "MUMPS", OrderingKind::automatic, false, false, false, false,
-        false, false, 0.0},
-       {SolverKind::amg, "amg", nullptr, "hypre's BoomerAMG", "pfv", OrderingKind::automatic, false, false, true,
-        false, false, true, 1e-7},
-       {SolverKind::cg, "cg", nullptr, "pfv", "pfv", OrderingKind::automatic, false, false, true, false, false, true,
-        1e-10},
-       {SolverKind::gauss_seidel, "gauss_seidel", nullptr, nullptr, "pfv", OrderingKind::automatic, false, false, true,
-        false, false, true, 1e-10}}};
+      {{SolverKind::automatic, "auto", nullptr, nullptr, nullptr, OrderingKind::automatic,
+        false, false, false, false, false, false, false, 0.0},  // stands for another: abilities_of
+       {SolverKind::supernodal, "supernodal", "CHOLMOD", "pfv", "pfv", OrderingKind::geometric,
+        true, true, true, false, true, true, false, 0.0},
+       {SolverKind::cholmod, "cholmod", "CHOLMOD", "CHOLMOD", "CHOLMOD", OrderingKind::geometric,
+        true, false, false, false, false, false, false, 0.0},
+       {SolverKind::tacho, "tacho", "Tacho", "Tacho", "Tacho", OrderingKind::metis,
+        true, false, false, false, false, false, false, 0.0},
+       {SolverKind::klu2, "klu2", "KLU2", "KLU2", "KLU2", OrderingKind::amd,
+        false, false, false, false, false, false, false, 0.0},
+       {SolverKind::mumps, "mumps", "MUMPS", "MUMPS", "MUMPS", OrderingKind::automatic,
+        false, false, false, true, false, false, false, 0.0},
+       {SolverKind::amg, "amg", nullptr, "hypre's BoomerAMG", "pfv", OrderingKind::automatic,
+        false, false, true, true, false, false, true, 1e-7},
+       {SolverKind::cg, "cg", nullptr, "pfv", "pfv", OrderingKind::automatic,
+        false, false, true, false, false, false, true, 1e-10},
+       {SolverKind::gauss_seidel, "gauss_seidel", nullptr, nullptr, "pfv", OrderingKind::automatic,
+        false, false, true, false, false, false, true, 1e-10}}};
 };
 
 }  // namespace pfv

@@ -174,8 +174,9 @@ namespace {
 
 /// What several ranks can do together.
 void check_shared(const Options& options) {
-  if (resolved(options.solver) != SolverKind::amg)
-    throw InputError(std::string("the solver ") + name_of(options.solver) + " runs on one rank; on several give amg");
+  if (!abilities_of(options.solver).shared_by_ranks)
+    throw InputError(std::string("the solver ") + name_of(options.solver) + " runs on one rank; on several give " +
+                     solvers_with(&SolverAbilities::shared_by_ranks));
   if (options.volume_rates == VolumeRates::geometric || options.partition == Partition::yade)
     throw InputError("the papers' volume rates and YADE's partition work on one rank; on several leave them out");
 }

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t block = std::size_t{1} << 18;  // characters that are held at a time
 
 [[noreturn]] void fail_to_read(const std::string& path, const std::string& why) {
-  throw InputError("cannot read packing " + quoted(path) + ": " + why +
+  throw InputError("cannot read packing " + detail::quoted(path) + ": " + why +
                    ": give a table, a LIGGGHTS dump or data file, or points of a VTK file");
 }
 

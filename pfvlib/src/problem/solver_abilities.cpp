@@ -95,7 +95,7 @@ std::string made_of(SolverKind solver, OrderingKind ordering) {
   const OrderingKind kind = resolved(solver, ordering);
   const std::string name = kind == Ordering::automatic ? "" : " (" + std::string(name_of(kind)) + ")";
   return "ordered by " + orderer(s, kind) + name + ", analysed by " + s.analysed + ", factored by " +
-         s.factored + ", solved by " + s.solved + "; called through Amesos2";
+         s.factored + ", solved by " + s.solved + (s.shared_by_ranks ? "" : "; called through Amesos2");
 }
 
 }  // namespace pfv

@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // With tacho_cholesky.cpp the only translation unit that includes Trilinos.
-#ifdef PFV_WITH_MUMPS
-// Debian's Amesos2 holds the MUMPS adapter, but its configuration does not say so.
-#include <Amesos2_config.h>
-#define HAVE_AMESOS2_MUMPS
-#include <Teuchos_DefaultMpiComm.hpp>
-#include <iostream>
-#endif
 #include "solve/amesos2_cholesky.hpp"
 #include "solve/checked_solver.hpp"
 #include "solve/fill_reducing_ordering.hpp"
-#include "parallel/mpi_session.hpp"
 #include "problem/solver_abilities.hpp"
 #include "sparse/sparse_error.hpp"
 
@@ -58,38 +50,10 @@ class KokkosSession {
   bool is_ours_ = false;
 };
 
-#ifdef PFV_WITH_MUMPS
-/// Keeps MUMPS' adapter from writing its error codes to standard error beside the exception.
-class QuietErrors {
- public:
-  QuietErrors() : buffer_(std::cerr.rdbuf(nullptr)) {}
-  ~QuietErrors() {
-    std::cerr.rdbuf(buffer_);
-    std::cerr.clear();
-  }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
-
- private:
-  std::streambuf* buffer_;
-};
-#endif
-
-/// Of this rank alone.
-Teuchos::RCP<const Teuchos::Comm<int>> communicator_for([[maybe_unused]] SolverKind solver) {
-#ifdef PFV_WITH_MUMPS
-  if (solver == SolverKind::mumps) {
-    MpiSession::start();
-    return Teuchos::rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF));
-  }
-#endif
-  return Teuchos::rcp(new Teuchos::SerialComm<int>());
-}
-
 /// Room for the values of a matrix with the given pattern.
-Teuchos::RCP<Matrix> tpetra_pattern(const SymmetricMatrix& matrix,
-                                    const Teuchos::RCP<const Teuchos::Comm<int>>& communicator) {
-  const auto map = Teuchos::rcp(new Map(matrix.size(), 0, communicator));
+Teuchos::RCP<Matrix> tpetra_pattern(const SymmetricMatrix& matrix) {
+  const Teuchos::RCP<const Teuchos::Comm<int>> alone = Teuchos::rcp(new Teuchos::SerialComm<int>());
+  const auto map = Teuchos::rcp(new Map(matrix.size(), 0, alone));
   LocalMatrix::row_map_type::non_const_type row_begin("row_begin", matrix.row_begin.size());
   LocalMatrix::index_type column("column", matrix.column.size());
   LocalMatrix::values_type value("value", matrix.column.size());
@@ -136,17 +100,15 @@ class Amesos2Solver final : public CheckedSolver {
       permutation = fill_reducing_ordering(ordering_, matrix, coordinates, *team_);
     const Turn turn(libraries_mutex);
     amesos2_ = {};
-    matrix_ = tpetra_pattern(matrix, communicator_for(kind()));
+    matrix_ = tpetra_pattern(matrix);
     right_side_ = Teuchos::rcp(new Vector(matrix_->getRangeMap(), 1));
     solution_ = Teuchos::rcp(new Vector(matrix_->getDomainMap(), 1));
     if (kind() == SolverKind::klu2) {
       amesos2_ = Amesos2::create<Matrix, Vector>("KLU2", matrix_);
-    } else if (factor_) {
+    } else {
       amesos2_ = Teuchos::rcp(new Amesos2Cholesky<Matrix, Vector>(
           matrix_, std::move(permutation), factor_, team_));
       if (is_mixed_) row_begin_ = matrix.row_begin;
-    } else {
-      return;
     }
     amesos2_->symbolicFactorization();
   }
@@ -164,12 +126,6 @@ class Amesos2Solver final : public CheckedSolver {
     const Turn turn(libraries_mutex);
     std::copy(matrix.value.begin(), matrix.value.end(),
               matrix_->getLocalMatrixDevice().values.data());
-#ifdef PFV_WITH_MUMPS
-    if (kind() == SolverKind::mumps) {
-      factor_with_mumps();
-      return refuse_lost_pressures(matrix);
-    }
-#endif
     amesos2_->numericFactorization();
     if (kind() == SolverKind::klu2 || kind() == SolverKind::tacho) refuse_lost_pressures(matrix);
   }
@@ -238,16 +194,6 @@ class Amesos2Solver final : public CheckedSolver {
       }
     });
   }
-
-#ifdef PFV_WITH_MUMPS
-  /// The adapter keeps the values that it saw when it ordered: it must begin anew.
-  void factor_with_mumps() {
-    const QuietErrors quiet;
-    amesos2_ = Amesos2::create<Matrix, Vector>("MUMPS", matrix_);
-    amesos2_->symbolicFactorization();
-    amesos2_->numericFactorization();
-  }
-#endif
 
   // First, so that Kokkos outlives what it allocated.
   std::shared_ptr<KokkosSession> kokkos_ = KokkosSession::shared();

@@ -5,6 +5,7 @@
 #include "solve/amg_solver.hpp"
 #include "solve/cholesky_factor.hpp"
 #include "solve/iterative_solvers.hpp"
+#include "solve/mumps_solver.hpp"
 #include "problem/solver_abilities.hpp"
 
 #include <algorithm>
@@ -49,7 +50,13 @@ constexpr Maker makers[] = {
        return make_amesos2_solver(o.options, make_tacho_cholesky(), o.team);
      }},
     {SolverKind::klu2, [](const Order& o) -> Made { return make_amesos2_solver(o.options, nullptr, o.team); }},
-    {SolverKind::mumps, [](const Order& o) -> Made { return make_amesos2_solver(o.options, nullptr, o.team); }},
+    {SolverKind::mumps, [](const Order&) -> Made {
+#ifdef PFV_WITH_MUMPS
+       return std::make_unique<MumpsSolver>();
+#else
+       return nullptr;  // refused before
+#endif
+     }},
     {SolverKind::amg, [](const Order& o) -> Made { return std::make_unique<AmgSolver>(o.tolerance); }},
     {SolverKind::cg, [](const Order& o) -> Made { return std::make_unique<IncompleteCholesky>(o.tolerance); }},
     {SolverKind::gauss_seidel, [](const Order& o) -> Made { return std::make_unique<GaussSeidel>(o.tolerance); }}};
@@ -58,7 +65,7 @@ static_assert(std::size(makers) + 1 == Names<SolverKind>::all.size(), "automatic
 }  // namespace
 
 void LinearSolver::share_rows(std::shared_ptr<const RowShare>) {
-  throw InputError("the solver " + name() + " runs on one rank; on several give amg");
+  throw InputError("the solver " + name() + " runs on one rank; on several give " + solvers_with(&SolverAbilities::shared_by_ranks));
 }
 
 std::unique_ptr<LinearSolver> make_solver(const Options& options, std::shared_ptr<Team> team) {

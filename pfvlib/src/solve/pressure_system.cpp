@@ -109,6 +109,22 @@ std::vector<Isolated> find_isolated(const PoreNetwork& network,
 
 namespace {
 
+}  // namespace
+
+/// Not by ghosts whose throats are not all here: these may belong to a patch of which their place does not tell.
+Eigen::VectorXd flux_boundaries_reached(const Unknowns& unknowns, const Share& share) {
+  Eigen::VectorXd reached = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns.of_boundary.size()));
+  for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore)
+    for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b)
+      if (unknowns.of_pore[pore] >= 0 && unknowns.of_pore[pore] == unknowns.of_boundary[b] &&
+          share.has_whole(static_cast<int>(pore)))
+        reached[static_cast<Eigen::Index>(b)] = 1.0;
+  if (share.ranks) share.ranks->take_largest(reached.data(), unknowns.of_boundary.size());
+  return reached;
+}
+
+namespace {
+
 /// A flux counts once, whatever ranks have pores at its boundary.
 void leave_to_lowest_rank(std::vector<int>& fed_by, const Share& share) {
   if (!share.ranks) return;
@@ -125,9 +141,10 @@ void refuse_lost_boundaries(const Unknowns& unknowns, const PoreBoundaries& boun
   std::vector<char> touched(container.faces.size(), 0);
   for (const auto& contact : boundaries.contacts)
     if (contact.face != PoreBoundaries::inside) touched[contact.face] = 1;
+  const Eigen::VectorXd reached = flux_boundaries_reached(unknowns, share);
   for (int b = 0; b < static_cast<int>(unknowns.of_boundary.size()); ++b) {
     const Boundary& boundary = boundary_of(container, b);
-    const bool loses_flux = boundary.drives_flux() && share.largest(unknowns.of_boundary[b]) < 0.0;
+    const bool loses_flux = boundary.drives_flux() && reached[b] == 0.0;
     const bool loses_pressure = b < container.face_count() && boundary.imposes_pressure() && any_pore &&
                                 !share.any(touched[b] != 0) && face_areas(container)[b] > 0.0;
     share.together([&] {
@@ -157,8 +174,7 @@ Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& bound
       unknowns.imposed_pores.push_back(pore);
       continue;
     }
-    // a ghost whose throats are not all here may belong to a patch that its place does not tell of
-    if (conditions[pore].flux_boundary < 0 || !share.has_whole(pore)) {
+    if (conditions[pore].flux_boundary < 0) {
       unknowns.of_pore[pore] = unknowns.count++;
       continue;
     }

@@ -31,6 +31,9 @@ struct Unknowns {
   int count = 0;
 };
 
+/// 1 for each boundary whose shared pressure pores have, on whatever rank, 0 for the others. Collective.
+Eigen::VectorXd flux_boundaries_reached(const Unknowns& unknowns, const Share& share);
+
 /// Numbers the unknowns. A pore on several faces takes the first of: imposed pressure, imposed flux
 /// (the first face), none. Throws InputError for a flux boundary that is left without a pore.
 Unknowns number_unknowns(const PoreNetwork& network, const PoreBoundaries& boundaries,

@@ -163,10 +163,7 @@ std::shared_ptr<const RowShare> share_rows(const PoreNetwork& network, const std
   std::vector<char> is_shared(unknowns.count, 0);
   for (const auto& shared : unknowns.shared) is_shared[shared.unknown] = 1;
   std::vector<int> boundary_of_border;
-  Eigen::VectorXd exists = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns.of_boundary.size()));
-  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b)
-    exists[static_cast<Eigen::Index>(b)] = unknowns.of_boundary[b] >= 0;
-  share.ranks->take_largest(exists.data(), static_cast<std::size_t>(exists.size()));
+  const Eigen::VectorXd exists = flux_boundaries_reached(unknowns, share);
   for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b) {
     if (exists[static_cast<Eigen::Index>(b)] == 0.0) continue;
     rows->borders.push_back(unknowns.of_boundary[b]);

@@ -45,6 +45,7 @@ Eigen::VectorXd gross_sources(const BuiltNetwork& built, const Solution& solutio
   if (built.kept.compressible())
     gross.array() += built.kept.storage->array() *
                      (solution.previous_pressures.array() - solution.reference).abs();
+  leave_to_owners(built.share, gross);
   return gross;
 }
 

@@ -156,8 +156,8 @@ void refine_pressures(BuiltNetwork& built, const Problem& problem, LinearSolver&
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     const Eigen::VectorXd correction =
         homogeneous_pressures(built, solver, continuity_defect(built, solution), solves);
-    const double largest = solution.relative_pressures.cwiseAbs().maxCoeff();
-    last = correction.cwiseAbs().maxCoeff();
+    const double largest = largest_pressure(built, solution.relative_pressures);
+    last = largest_pressure(built, correction);
     if (last > exact * largest) {
       if (!rounding) rounding = rounding_of_pressures(built, solution, solves);
       if (last <= *rounding) return;
