@@ -29,15 +29,15 @@ cmake --build "$root/build-sanitize" --target unit_tests
 ASAN_OPTIONS=detect_leaks=0 in_two_halves "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
 
 if [ "${1:-}" = long ]; then
-  export PFV_REBUILDS=2000
+  export PFV_LONG=1 PFV_REBUILDS=2000
   echo "unit tests, fuzz, command and coupled runs under the address, leak and undefined-behaviour sanitizers"
   cmake --build "$root/build-sanitize"
   "$root/build-sanitize/bin/unit_tests" --gtest_brief=1
   UBSAN_OPTIONS=halt_on_error=1 "$root/build-sanitize/bin/fuzz" --count 1000 --seed 1
   UBSAN_OPTIONS=halt_on_error=1 "$root/build-sanitize/bin/container_fuzz" --count 500 --seed 1
   for ranks in 2 4; do  # leaks: MPI keeps what it has until the program ends
-    ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 mpirun --allow-run-as-root --oversubscribe \
-      --mca mpi_yield_when_idle 1 -n "$ranks" "$root/build-sanitize/bin/ranks_tests" --gtest_brief=1
+    ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 \
+      on_ranks "$ranks" "$root/build-sanitize/bin/ranks_tests" --gtest_brief=1
   done
   logs=$(mktemp -d)
   echo "reports of the runs: $logs"
@@ -50,8 +50,10 @@ if [ "${1:-}" = long ]; then
   "$root/tests/sanitizer_reports.py" "$logs"/*
   rm -r "$logs"
   "$root/build/bin/fuzz" --count 10000 --seed 1
-  PFV_RANK_PACKINGS=20000 mpirun --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 -n 4 \
-    "$root/build/bin/ranks_tests" --gtest_filter='*HardToTriangulate'
+  for ranks in 2 3 4; do
+    on_ranks "$ranks" "$root/build/bin/ranks_tests" --gtest_brief=1
+  done
+  PFV_RANK_PACKINGS=20000 on_ranks 4 "$root/build/bin/ranks_tests" --gtest_filter='*HardToTriangulate'
   "$root/build/bin/fuzz" --count 10000 --seed 2
   "$root/build/bin/container_fuzz" --count 5000 --seed 2
   "$root/run.sh" oedometer N=5000
@@ -75,7 +77,6 @@ if [ "${1:-}" = long ]; then
   "$root/doc/error_vs_time.py" all
   "$root/doc/scaling.py" million
   "$root/tests/bench/table.py"
-  PFV_LONG=1 PFV_BUILD=$root/build PYTHONPATH=$root/build/python /usr/bin/python3 "$root/tests/python/test_start_page.py"
   install_packages debian-packages-site.txt
   "$root/doc/website.py"
 fi

@@ -32,6 +32,11 @@ build_project() {
   cmake --build "$root/build" ${1:+--target "$@"}
 }
 
+# Runs a program on some ranks; as root, and on fewer cores than ranks.
+on_ranks() {
+  mpirun --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 -n "$@"
+}
+
 # Runs a gtest program with its arguments as two processes that share its tests.
 in_two_halves() {
   local half processes=() failed=0

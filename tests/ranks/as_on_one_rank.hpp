@@ -41,7 +41,7 @@ struct Case {
   pfv::Fluid fluid = {};
   pfv::Options options = tight();
   double dt = 0.0;
-  Deal deal = Deal::by_place;
+  std::vector<Deal> deals = {Deal::by_place};
 };
 
 inline void expect_near(double a, double b, double relative, double scale, const char* what) {
@@ -140,11 +140,10 @@ inline void expect_means_agree(pfv::Flow& all, pfv::Flow& one, double pressure) 
   EXPECT_NEAR(found.volume, expected.volume, 1e-12 * expected.volume);
 }
 
-inline void expect_as_on_one_rank(const Case& what) {
-  const std::vector<int> columns = own_columns(what.packing, what.deal);
+inline void expect_as_on_one_rank(const Case& what, pfv::Flow& one, const pfv::Forces& expected, Deal deal) {
+  const std::vector<int> columns = own_columns(what.packing, deal);
   const pfv::PackingArrays part = part_of(what.packing, columns);
-  pfv::Flow one(what.container, what.fluid, what.options), all(what.container, what.fluid, what.options, world());
-  const pfv::Forces& expected = one.evaluate(what.packing.view(), what.dt);
+  pfv::Flow all(what.container, what.fluid, what.options, world());
   const pfv::Forces& found = all.evaluate(part.view(), what.dt);
   const Difference forces = difference_of(found.total, expected.total, columns);
   EXPECT_LT(forces.rms, 1e-9);
@@ -164,4 +163,46 @@ inline void expect_as_on_one_rank(const Case& what) {
   expect_reports_agree(all.report(), one.report());
   expect_means_agree(all, one, pressure);
   expect_fields_agree(all, one, columns);
+}
+
+inline void expect_as_on_one_rank(const Case& what) {
+  pfv::Flow one(what.container, what.fluid, what.options);
+  const pfv::Forces& expected = one.evaluate(what.packing.view(), what.dt);
+  for (const Deal deal : what.deals) {
+    SCOPED_TRACE("deal " + std::to_string(static_cast<int>(deal)));
+    expect_as_on_one_rank(what, one, expected, deal);
+  }
+}
+
+/// Masses of grains, what else acts on them, pistons.
+struct Loads {
+  Eigen::VectorXd masses;
+  Eigen::Matrix3Xd others;
+  std::vector<pfv::Piston> pistons = std::vector<pfv::Piston>(6);
+
+  Loads of(const std::vector<int>& columns) const { return {masses(columns), others(Eigen::all, columns), pistons}; }
+  pfv::GrainDynamics view() const { return {{masses.data(), masses.size()}, {others.data(), 3, others.cols()}, pistons}; }
+};
+
+/// The same grains on one rank and on all.
+struct Both {
+  const pfv::PackingArrays& packing;
+  const std::vector<int>& columns;
+  const pfv::GrainDynamics of_one, of_all;
+};
+
+/// Staged steps, side by side.
+inline void expect_staged_steps_agree(pfv::Flow& one, pfv::Flow& all, const Both& grains, double dt, int steps) {
+  const pfv::PackingArrays part = part_of(grains.packing, grains.columns);
+  for (int step = 0; step < steps; ++step) {
+    SCOPED_TRACE("step " + std::to_string(step));
+    const pfv::Forces& expected = one.advance(grains.packing.view(), dt, pfv::Step::with(pfv::Coupling::staged, grains.of_one));
+    const pfv::Forces& found = all.advance(part.view(), dt, pfv::Step::with(pfv::Coupling::staged, grains.of_all));
+    EXPECT_EQ(all.stages(), one.stages());
+    EXPECT_GT(one.stages(), 5);
+    EXPECT_LT(difference_of(found.total, expected.total, grains.columns).rms, 1e-8);
+    EXPECT_LT(difference_of(found.torque, expected.torque, grains.columns).rms, 1e-8);
+  }
+  EXPECT_LT(std::abs(all.report().mass_error), 1e-9);
+  EXPECT_LT(all.report().force_balance_error, 1e-12);
 }

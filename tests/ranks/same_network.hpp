@@ -102,14 +102,11 @@ inline Built built_of(const pfv::Packing& packing, const pfv::Container& contain
   return built;
 }
 
-/// Compares what this rank has with the network of one rank.
-inline void expect_same(const pfv::PackingArrays& packing, const pfv::Container& container, Deal deal) {
-  const Built whole = built_of(packing.view(), container, nullptr);
-  const pfv::PackingArrays part = part_of(packing, own_columns(packing, deal));
-  const Built shared = built_of(part.view(), container, world());
+/// Compares what this rank has with the network of one rank, whose pores are `expected`.
+inline void expect_same(const Built& shared, const Built& whole, const std::map<Name, PoreValues>& expected) {
   ASSERT_EQ(shared.refusal.empty(), whole.refusal.empty()) << shared.refusal << " / " << whole.refusal;
   if (!whole.refusal.empty()) return;
-  const auto expected = pores_of(*whole.network), found = pores_of(*shared.network);
+  const auto found = pores_of(*shared.network);
   int unknown = 0;
   std::map<std::string, int> unlike;
   for (const auto& [name, values] : found) {
@@ -127,6 +124,16 @@ inline void expect_same(const pfv::PackingArrays& packing, const pfv::Container&
   EXPECT_EQ(pfv::hidden_spheres(*shared.network), pfv::hidden_spheres(*whole.network));
   EXPECT_EQ(pfv::merged_pores(*shared.network), pfv::merged_pores(*whole.network));
   EXPECT_EQ(pfv::degenerate_throats(*shared.network), pfv::degenerate_throats(*whole.network));
+}
+
+inline void expect_same(const pfv::PackingArrays& packing, const pfv::Container& container, const std::vector<Deal>& deals) {
+  const Built whole = built_of(packing.view(), container, nullptr);
+  const auto expected = whole.refusal.empty() ? pores_of(*whole.network) : std::map<Name, PoreValues>();
+  for (const Deal deal : deals) {
+    SCOPED_TRACE("deal " + std::to_string(static_cast<int>(deal)));
+    const pfv::PackingArrays part = part_of(packing, own_columns(packing, deal));
+    expect_same(built_of(part.view(), container, world()), whole, expected);
+  }
 }
 
 inline pfv::PackingArrays numbered(pfv::PackingArrays packing) {

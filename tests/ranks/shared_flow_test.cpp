@@ -2,7 +2,6 @@
 // What several ranks find together is what one rank finds.
 #include "as_on_one_rank.hpp"
 
-#include "pfv/dense_packing.hpp"
 #include "pfv/flow.hpp"
 #include "pfv/error.hpp"
 #include "pfv/solve_plan.hpp"
@@ -31,8 +30,7 @@ pfv::PackingArrays moving(pfv::PackingArrays packing) {
 }  // namespace
 
 TEST(SharedFlow, SeepageThroughABedAtRest) {
-  for (const Deal deal : {Deal::by_place, Deal::at_random, Deal::all_to_one})
-    expect_as_on_one_rank({pfv::dense_packing(400), seepage(), {}, tight(), 0.0, deal});
+  expect_as_on_one_rank({dense_bed(in_long(400, 150)), seepage(), {}, tight(), 0.0, every_deal});
 }
 
 TEST(SharedFlow, GrainsThatMoveAndFacesThatDo) {
@@ -40,7 +38,7 @@ TEST(SharedFlow, GrainsThatMoveAndFacesThatDo) {
   box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
   box[pfv::Face::xlo].velocity = 0.3;
   box[pfv::Face::zhi].velocity = -0.2;
-  expect_as_on_one_rank({moving(pfv::dense_packing(400)), box});
+  expect_as_on_one_rank({moving(dense_bed(in_long(400, 150))), box});
 }
 
 TEST(SharedFlow, FluxesAndPatchesAndAWell) {
@@ -50,7 +48,7 @@ TEST(SharedFlow, FluxesAndPatchesAndAWell) {
   box.patches.push_back({pfv::Face::zhi, {0.3, 0.7, 0.2, 0.6}, pfv::Boundary::pressure(0.5)});
   box.patches.push_back({pfv::Face::ylo, {0.5, 0.5001, 0.5, 0.5001}, pfv::Boundary::pressure(0.1)});
   box.regions.push_back({{0.4, 0.4, 0.4}, {0.4001, 0.4001, 0.4001}, pfv::Boundary::flux(2e-4)});
-  expect_as_on_one_rank({moving(pfv::dense_packing(400)), box});
+  expect_as_on_one_rank({moving(dense_bed(in_long(400, 150))), box});
 }
 
 /// Two pores are as near to the place of the patch as each other.
@@ -71,7 +69,7 @@ TEST(SharedFlow, RegionsOfManyPoresThatTouchImposedPressures) {
   pfv::Box box;
   box[pfv::Face::zlo].boundary = pfv::Boundary::pressure(0.0);
   box.regions.push_back({{0.0, 0.0, 1e-5}, {1.0, 1.0, 0.6}, pfv::Boundary::flux(1.0)});
-  expect_as_on_one_rank({pfv::dense_packing(300), box});
+  expect_as_on_one_rank({dense_bed(in_long(300, 120)), box});
 }
 
 TEST(SharedFlow, ARegionThatTakesAllPoresHasNoWayOut) {
@@ -80,7 +78,7 @@ TEST(SharedFlow, ARegionThatTakesAllPoresHasNoWayOut) {
   box[pfv::Face::zlo].boundary = pfv::Boundary::sealed();
   box.patches.push_back({pfv::Face::zhi, {0.5, 0.5001, 0.5, 0.5001}, pfv::Boundary::pressure(0.0)});
   box.regions.push_back({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, pfv::Boundary::flux(1.0)});
-  const pfv::PackingArrays packing = pfv::dense_packing(100);
+  const pfv::PackingArrays packing = dense_bed(100);
   const pfv::PackingArrays part = part_of(packing, own_columns(packing, Deal::by_place));
   pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
   EXPECT_THROW(one.evaluate(packing.view()), pfv::InputError);
@@ -90,8 +88,7 @@ TEST(SharedFlow, ARegionThatTakesAllPoresHasNoWayOut) {
 TEST(SharedFlow, NeighboursThatSlidePastEachOther) {
   pfv::Options options = tight();
   options.shear_viscous = options.split_forces = true;
-  for (const Deal deal : {Deal::by_place, Deal::at_random, Deal::all_to_one})
-    expect_as_on_one_rank({moving(pfv::dense_packing(400)), seepage(), {}, options, 0.0, deal});
+  expect_as_on_one_rank({moving(dense_bed(in_long(400, 150))), seepage(), {}, options, 0.0, every_deal});
   expect_as_on_one_rank({moving(support::random_packing(60, 0.02, 0.04, 3)), seepage(), {}, options});
 }
 
@@ -107,7 +104,7 @@ TEST(SharedFlow, ACompressibleFluidBetweenSealedWalls) {
   fluid.bulk_modulus = 1e3;
   pfv::Box box;
   box[pfv::Face::zhi].velocity = -1e-3;
-  expect_as_on_one_rank({moving(pfv::dense_packing(300)), box, fluid, tight(), 1e-3});
+  expect_as_on_one_rank({moving(dense_bed(in_long(300, 120))), box, fluid, tight(), 1e-3});
 }
 
 TEST(SharedFlow, GrainsThatSettleInOpenWater) {
@@ -126,7 +123,7 @@ TEST(SharedFlow, ACompressibleFluidOnNewNetworks) {
   pfv::Box box;
   box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(2.0);
   box[pfv::Face::zlo].velocity = 0.1;
-  pfv::PackingArrays packing = moving(pfv::dense_packing(200));
+  pfv::PackingArrays packing = moving(dense_bed(in_long(200, 80)));
   packing.velocities *= 0.3;
   pfv::Flow one(box, fluid, tight()), all(box, fluid, tight(), world());
   const auto compare = [&](pfv::Flow& some, pfv::Flow& alone, Deal deal, const char* when) {
@@ -195,13 +192,13 @@ TEST(SharedFlow, ContainersOfPlanesAndACylinder) {
     const int last = container->face_count() - 1;
     container->faces[last].boundary = pfv::Boundary::pressure(1.0);
     container->faces[last - 1].boundary = pfv::Boundary::pressure(0.0);
-    expect_as_on_one_rank({support::spheres_in(*container, 300, 0.06, random), *container, {}, options});
+    expect_as_on_one_rank({support::spheres_in(*container, in_long(300, 120), 0.06, random), *container, {}, options});
   }
 }
 
 TEST(SharedFlow, StepsWithNewNetworksAsOnOneRank) {
-  pfv::PackingArrays packing = moving(pfv::dense_packing(300));
-  packing.velocities *= 0.05;
+  pfv::PackingArrays packing = moving(dense_bed(in_long(300, 120)));
+  packing.velocities *= in_long(0.05, 0.08);
   pfv::Box box;
   box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
   const std::vector<int> columns = own_columns(packing, Deal::by_place);
@@ -222,43 +219,30 @@ TEST(SharedFlow, StepsWithNewNetworksAsOnOneRank) {
 
 /// Far above the limit of explicit steps, with a piston, grains under their weight, one of them held.
 TEST(SharedFlow, StagedStepsAsOnOneRank) {
-  pfv::PackingArrays packing = moving(pfv::dense_packing(300));
+  pfv::PackingArrays packing = moving(dense_bed(in_long(300, 80)));
   packing.velocities *= 0.05;
   pfv::Box box;
   box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.5);
   pfv::Fluid fluid;
   fluid.gravity = {0.0, 0.0, -9.81};
+  Loads loads{1e4 * packing.radii.array().cube(), Eigen::Matrix3Xd::Zero(3, packing.ids.size())};
+  loads.others.row(2) = -9.81 * loads.masses.transpose();
+  loads.masses[17] = std::numeric_limits<double>::infinity();
+  loads.pistons[5] = {0.5, -3.0};
   for (const Deal deal : {Deal::by_place, Deal::all_to_one}) {
     pfv::Options options = tight();
     options.shear_viscous = deal == Deal::by_place;
     if (deal == Deal::all_to_one) fluid.bulk_modulus = 1e3;
     const std::vector<int> columns = own_columns(packing, deal);
-    const pfv::PackingArrays part = part_of(packing, columns);
-    Eigen::VectorXd masses = 1e4 * packing.radii.array().cube();
-    masses[17] = std::numeric_limits<double>::infinity();
-    Eigen::Matrix3Xd weights = Eigen::Matrix3Xd::Zero(3, packing.ids.size());
-    weights.row(2) = -9.81 * 1e4 * packing.radii.array().cube().transpose();
-    const Eigen::VectorXd own_masses = masses(columns);
-    const Eigen::Matrix3Xd own_weights = weights(Eigen::all, columns);
-    std::vector<pfv::Piston> pistons(6);
-    pistons[5] = {0.5, -3.0};
-    const pfv::GrainDynamics of_one{{masses.data(), masses.size()}, {weights.data(), 3, weights.cols()}, pistons};
-    const pfv::GrainDynamics of_all{{own_masses.data(), own_masses.size()}, {own_weights.data(), 3, own_weights.cols()}, pistons};
+    const Loads own = loads.of(columns);
+    const pfv::GrainDynamics of_all = own.view();
     pfv::Flow one(box, fluid, options), all(box, fluid, options, world());
     one.evaluate(packing.view(), 1e-3);
-    const double dt = 30.0 * one.time_step_limit(masses, pistons);
-    for (int step = 0; step < 3; ++step) {
-      const pfv::Forces& expected = one.advance(packing.view(), dt, pfv::Step::with(pfv::Coupling::staged, of_one));
-      const pfv::Forces& found = all.advance(part.view(), dt, pfv::Step::with(pfv::Coupling::staged, of_all));
-      EXPECT_EQ(all.stages(), one.stages());
-      EXPECT_GT(one.stages(), 5);
-      EXPECT_LT(difference_of(found.total, expected.total, columns).rms, 1e-8) << "step " << step;
-      EXPECT_LT(difference_of(found.torque, expected.torque, columns).rms, 1e-8);
-    }
-    EXPECT_LT(std::abs(all.report().mass_error), 1e-9);
-    EXPECT_LT(all.report().force_balance_error, 1e-12);
+    const double dt = 30.0 * one.time_step_limit(loads.masses, loads.pistons);
+    expect_staged_steps_agree(one, all, {packing, columns, loads.view(), of_all}, dt, 3);
     for (std::size_t f = 0; f < 6; ++f)
       EXPECT_LT((all.face_forces()[f] - one.face_forces()[f]).norm(), 1e-8 * one.face_forces()[4].norm());
+    const pfv::PackingArrays part = part_of(packing, columns);
     all.advance(part.view(), dt, {pfv::Coupling::automatic, &of_all, false, 1.0, {}});
     EXPECT_EQ(all.coupling(), pfv::Coupling::staged);
     all.advance(part.view(), 1e-3 * dt, {pfv::Coupling::automatic, &of_all, false, 1.0, {}});
@@ -267,7 +251,7 @@ TEST(SharedFlow, StagedStepsAsOnOneRank) {
 }
 
 TEST(SharedFlow, TheSameBytesTwice) {
-  const pfv::PackingArrays packing = moving(pfv::dense_packing(300));
+  const pfv::PackingArrays packing = moving(dense_bed(in_long(300, 120)));
   const pfv::PackingArrays part = part_of(packing, own_columns(packing, Deal::by_place));
   const auto forces = [&] {
     pfv::Flow flow(seepage(), {}, tight(), world());
@@ -279,9 +263,9 @@ TEST(SharedFlow, TheSameBytesTwice) {
 TEST(SharedFlow, TheLimitOfTheTimeStep) {
   pfv::Box box;
   box[pfv::Face::zhi].boundary = pfv::Boundary::pressure(0.0);
-  for (const pfv::PackingArrays& packing : {pfv::dense_packing(400), support::random_packing(40, 0.02, 0.04, 3)}) {
+  for (const pfv::PackingArrays& packing : {dense_bed(in_long(400, 150)), support::random_packing(40, 0.02, 0.04, 3)}) {
     const Eigen::VectorXd masses = 1e3 * packing.radii.array().cube();
-    for (const Deal deal : {Deal::by_place, Deal::at_random, Deal::all_to_one}) {
+    for (const Deal deal : every_deal) {
       const std::vector<int> columns = own_columns(packing, deal);
       const pfv::PackingArrays part = part_of(packing, columns);
       pfv::Flow one(box, {}, tight()), all(box, {}, tight(), world());
@@ -309,7 +293,7 @@ TEST(SharedFlow, TheLimitOfTheTimeStep) {
 
 /// A bed that is set in motion by degrees, in the steps of a host: the same intervals, on a rank without grains too.
 TEST(SharedFlow, WhenTheFlowIsSolvedNext) {
-  pfv::PackingArrays packing = moving(pfv::dense_packing(300));
+  pfv::PackingArrays packing = moving(dense_bed(in_long(300, 120)));
   const Eigen::Matrix3Xd velocities = 0.02 * packing.velocities;
   const Eigen::VectorXd masses = 1e3 * packing.radii.array().cube();
   pfv::Box box;
@@ -341,7 +325,7 @@ TEST(SharedFlow, WhenTheFlowIsSolvedNext) {
 }
 
 TEST(SharedFlow, AnErrorOnOneRankIsThatOfAll) {
-  pfv::PackingArrays packing = pfv::dense_packing(200);
+  const pfv::PackingArrays packing = dense_bed(in_long(200, 160));
   const auto refusal = [&](const pfv::PackingArrays& of) {
     const pfv::PackingArrays part = part_of(of, own_columns(of, Deal::by_place));
     pfv::Flow flow(seepage(), {}, tight(), world());
@@ -373,7 +357,7 @@ TEST(SharedFlow, WhatRanksCannotDoTogetherIsRefused) {
   options = tight();
   options.volume_rates = pfv::VolumeRates::geometric;
   EXPECT_THROW(pfv::Flow(seepage(), {}, options, world()), pfv::InputError);
-  const pfv::PackingArrays packing = pfv::dense_packing(100), part = part_of(packing, own_columns(packing, Deal::by_place));
+  const pfv::PackingArrays packing = dense_bed(100), part = part_of(packing, own_columns(packing, Deal::by_place));
   pfv::Flow flow(seepage(), {}, tight(), world());
   flow.evaluate(part.view());
   EXPECT_THROW(flow.advance(part.view(), 1e-3, {pfv::Coupling::staged, nullptr, true, 1.0, {}}), pfv::InputError);

@@ -4,19 +4,33 @@
 #include "distributed/packing_parts.hpp"
 #include "distributed/sphere_records.hpp"
 #include "parallel/ranks.hpp"
+#include "pfv/dense_packing.hpp"
 #include "pfv/ranks.hpp"
 #include "pfv/packing.hpp"
 #include "support/packings.hpp"
 
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 /// The ranks that the tests run on.
 std::shared_ptr<const pfv::Ranks> world();
 
+/// ./test.sh long sets PFV_LONG: then all is in full size.
+template <class T>
+T in_long(T full, std::common_type_t<T> otherwise) {
+  return std::getenv("PFV_LONG") ? full : otherwise;
+}
+
+/// As every rank makes it, of which a quarter of the sweeps makes a bed too, whose spheres overlap somewhat more.
+inline pfv::PackingArrays dense_bed(int spheres) { return pfv::dense_packing(spheres, 0.6, 0.2, 1, in_long(400, 100)); }
+
 /// How a packing that every rank has is dealt out.
 enum class Deal { by_place, at_random, all_to_one };
+
+inline const std::vector<Deal> every_deal{Deal::by_place, Deal::at_random, Deal::all_to_one};
 
 /// Columns of this rank.
 inline std::vector<int> own_columns(const pfv::PackingArrays& packing, Deal deal) {
