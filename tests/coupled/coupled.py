@@ -20,9 +20,14 @@ sys.path.append(str(HERE.parents[1] / "inputs/common"))
 from programs import BIN, liggghts_words, one_thread, solve_words
 
 EDGE = 0.1  # of the cubic flow box, m
+LONG = "PFV_LONG" in os.environ  # ./test.sh long: all is in full size
 HANG = 300  # s; only a guard against a hanging run, far above what any test needs
 
 FACES = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi"]
+
+
+def in_long(full, otherwise):
+    return full if LONG else otherwise
 
 
 def packing(cells=5, seed=1):
@@ -103,6 +108,22 @@ def forces(rows):
     return {n: row[7:10] for n, row in rows.items()}
 
 
+def share_one_core():
+    """Of ranks, which turn about while they wait: on a core of its own each would go on asking for messages, at the expense
+    of whatever else runs. A ./test.sh long has them on all cores."""
+    if not LONG:
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+
+
+def one_after_the_other(scripts):
+    """One script: programs, and several ranks above all, take long to start. `each_of` divides its log."""
+    return "clear\n".join(f'print "the next one"\n{script}' for script in scripts)
+
+
+def each_of(log):
+    return log.split("\nthe next one\n")[1:]
+
+
 def read_thermo(log):
     """Rows of all runs, one dictionary each."""
     rows, names = [], None
@@ -143,7 +164,8 @@ class CoupledTest(unittest.TestCase):
         shutil.copy(HERE / "in.packing", self.folder)
         words = liggghts_words("in.test", ranks=ranks, program=command or BIN / "liggghts-pfv")
         return subprocess.run(words, cwd=self.folder, capture_output=True, timeout=HANG, encoding="utf-8",
-                              errors="replace", env={**one_thread(), **(environment or {})})
+                              errors="replace", env={**one_thread(), **(environment or {})},
+                              preexec_fn=share_one_core if ranks > 1 else None)
 
     def liggghts(self, script, **options):
         """A run that must succeed; returns its screen output."""

@@ -17,12 +17,12 @@ THERMO = ("thermo_style custom step f_flow[3] f_flow[4] f_flow[5] f_flow[8] " +
           "\nthermo_modify norm no format float %.15g\nthermo 5\n")
 
 
-def write_paddle(folder):
+def write_paddle(folder, half=0.025):
     """paddle.stl in the middle of moving grains, and packing.data."""
-    grains = [g for g in packing(6) if not (abs(g[2] - MIDDLE) < g[4] + 1e-3 and abs(g[1] - MIDDLE) < 0.03
-                                            and abs(g[3] - MIDDLE) < 0.03)]
+    grains = [g for g in packing(6) if not (abs(g[2] - MIDDLE) < g[4] + 1e-3 and abs(g[1] - MIDDLE) < half + 5e-3
+                                            and abs(g[3] - MIDDLE) < half + 5e-3)]
     write_data(folder, grains, random_velocities(grains))
-    write_mesh(folder / "paddle.stl", plate(1, 0.025, (MIDDLE, MIDDLE, MIDDLE)))
+    write_mesh(folder / "paddle.stl", plate(1, half, (MIDDLE, MIDDLE, MIDDLE)))
 
 
 class Obstacles(CoupledTest):

@@ -3,7 +3,8 @@
 import unittest
 
 from bodies_test import CREATE, GRAVITY, HEAD, INSERT, VOLUME
-from coupled import CoupledTest, dump, forces, largest_difference, read_dump, read_thermo, restarted_head
+from coupled import CoupledTest, dump, each_of, forces, in_long, largest_difference, one_after_the_other, read_dump
+from coupled import read_thermo, restarted_head
 from obstacles_test import FLOW, PADDLE, THERMO, TURN, WATER, write_paddle
 
 SHARED = "solver amg tolerance 1e-11 ranks all"
@@ -19,24 +20,28 @@ def where(ranks):
 class SharedObstacles(CoupledTest):
     def setUp(self):
         super().setUp()
-        write_paddle(self.folder)
+        write_paddle(self.folder, in_long(0.025, 0.015))
 
     def fix(self, ranks, words="", fluid=FLOW):
         return f"fix flow all pfv {fluid} obstacle mesh pad {words} {where(ranks)}\n"
 
-    def turned(self, ranks, words=""):
-        """(rows of thermo, {step: forces}) of a paddle that turns among the grains."""
-        said = self.liggghts("include in.packing\n" + PADDLE + TURN + self.fix(ranks, words) + THERMO + dump("d.dump") +
-                             "run 20\n", ranks=ranks)
-        self.assertEqual("shared by" in said, ranks > 1)
-        return read_thermo((self.folder / "log.liggghts").read_text()), read_dump(self.folder / "d.dump")
+    def turned(self, ranks, each):
+        """With each of these words: (rows of thermo, {step: forces}) of a paddle that turns among the grains."""
+        steps = in_long(20, 5)
+        self.liggghts(one_after_the_other(
+            "include in.packing\n" + PADDLE + TURN + self.fix(ranks, words) + THERMO + dump(f"{n}.dump") + f"run {steps}\n"
+            for n, words in enumerate(each)), ranks=ranks)
+        logs = each_of((self.folder / "log.liggghts").read_text())
+        for log in logs:
+            self.assertEqual("the flow is shared by" in log, ranks > 1)
+        return [(read_thermo(log), read_dump(self.folder / f"{n}.dump")) for n, log in enumerate(logs)]
 
     def test_a_paddle_that_turns_feels_what_it_feels_on_one_rank(self):
-        for words in ("torques yes", "coupling staged"):
-            rows, steps = self.turned(1, words)
-            scale = max(abs(rows[-1][f"flow[{n}]"]) for n in (11, 12, 13))
-            for ranks in (2, 4):
-                others, grains = self.turned(ranks, words)
+        each = "torques yes", "coupling staged"
+        alone = self.turned(1, each)
+        for ranks in in_long((2, 4), (3,)):
+            for (rows, steps), (others, grains) in zip(alone, self.turned(ranks, each), strict=True):
+                scale = max(abs(rows[-1][f"flow[{n}]"]) for n in (11, 12, 13))
                 for row, other in zip(rows[1:], others[1:], strict=True):
                     for n in range(11, 17):
                         self.assertAlmostEqual(other[f"flow[{n}]"], row[f"flow[{n}]"], delta=1e-8 * scale)
@@ -50,14 +55,15 @@ class SharedObstacles(CoupledTest):
 
     def test_a_restart_goes_on_with_the_same_spheres(self):
         head = "include in.packing\n" + PADDLE + TURN
-        self.liggghts(head + self.fix(3, "couple_every 2", WATER) + "run 11\nwrite_restart file.restart\n" + dump("on.dump") +
-                      "run 10\n", ranks=3)
+        before, after = in_long((11, 10), (5, 4))
+        self.liggghts(head + self.fix(3, "couple_every 2", WATER) + f"run {before}\nwrite_restart file.restart\n" +
+                      dump("on.dump") + f"run {after}\n", ranks=3)
         start = restarted_head() + PADDLE + TURN
-        self.liggghts(start + self.fix(3, "couple_every 2", WATER) + dump("again.dump") + "run 10\n", ranks=3)
+        self.liggghts(start + self.fix(3, "couple_every 2", WATER) + dump("again.dump") + f"run {after}\n", ranks=3)
         self.assertEqual((self.folder / "on.dump").read_bytes(), (self.folder / "again.dump").read_bytes())
         expected = read_dump(self.folder / "on.dump")
         for ranks in (1, 2):
-            self.liggghts(start + self.fix(ranks, "couple_every 2", WATER) + dump("other.dump") + "run 10\n", ranks=ranks)
+            self.liggghts(start + self.fix(ranks, "couple_every 2", WATER) + dump("other.dump") + f"run {after}\n", ranks=ranks)
             for step, rows in read_dump(self.folder / "other.dump").items():
                 self.assertLess(largest_difference(forces(rows), forces(expected[step])), 1e-7)
 
@@ -72,17 +78,20 @@ class SharedClumps(CoupledTest):
         self.liggghts(HEAD.format(start=CREATE, step=1e-5) + insert.format(
             mass=1000 * VOLUME, speed=-0.05, orientation="random", place="0.01 0.09 0.01 0.09 0.01 0.09"))
 
-    def script(self, ranks, words, restart="body.restart", step=1e-5):
+    def script(self, ranks, words, commands, restart="body.restart", name="d"):
         grid = "processors * 1 1", "processors 1 1 *" if ranks > 2 else "processors * 1 1"
         flow = GRAVITY + f"fix flow all pfv density 500 {WALLS} couple_every 1 {words} {where(ranks)}\n"
-        return (HEAD.format(start=f"read_restart {restart}", step=step).replace(*grid) + flow +
-                "fix move all multisphere\n" + dump("d.dump") +
+        return (HEAD.format(start=f"read_restart {restart}", step=1e-5).replace(*grid) + flow +
+                "fix move all multisphere\n" + dump(f"{name}.dump") +
                 "thermo_style custom step f_flow[3] f_flow[4] f_flow[6] f_flow[8]\nthermo_modify norm no format float %.15g\n"
-                "thermo 1\n")
+                f"thermo 1\n{commands}")
 
-    def run_on(self, ranks, words, commands="run 10\n", **options):
-        self.liggghts(self.script(ranks, words, **options) + commands, ranks=ranks)
-        return read_thermo((self.folder / "log.liggghts").read_text()), read_dump(self.folder / "d.dump")
+    def run_each(self, ranks, each, steps):
+        """With each of these words: (rows of thermo, {step: grains})."""
+        self.liggghts(one_after_the_other(self.script(ranks, words, f"run {steps}\n", name=n) for n, words in enumerate(each)),
+                      ranks=ranks)
+        return [(read_thermo(log), read_dump(self.folder / f"{n}.dump"))
+                for n, log in enumerate(each_of((self.folder / "log.liggghts").read_text()))]
 
     def compare(self, found, expected, within):
         rows, steps = expected
@@ -95,23 +104,27 @@ class SharedClumps(CoupledTest):
             self.assertLess(largest_difference(forces(grains), forces(steps[step])), within)
 
     def test_clumps_move_as_on_one_rank(self):
-        for words in ("viscosity 0.1 torques yes retriangulate 1e-3", "viscosity 2000 coupling staged shear_viscous yes"):
-            expected = self.run_on(1, words)
-            self.assertEqual(len(expected[1][max(expected[1])]), 48)
-            for ranks in (2, 4):
+        each = "viscosity 0.1 torques yes retriangulate 1e-3", "viscosity 2000 coupling staged shear_viscous yes"
+        steps = in_long(10, 5)
+        alone = self.run_each(1, each, steps)
+        for ranks in in_long((2, 4), (3,)):
+            for words, expected, found in zip(each, alone, self.run_each(ranks, each, steps), strict=True):
+                self.assertEqual(len(expected[1][max(expected[1])]), 48)
                 with self.subTest(words=words, ranks=ranks):
-                    self.compare(self.run_on(ranks, words), expected, 1e-7)
+                    self.compare(found, expected, 1e-7)
 
     def test_the_same_bytes_twice_and_a_restart(self):
         words = "viscosity 0.1 bulk_modulus 1e5 coupling auto"
         found = []
+        half = in_long(5, 3)
         for _ in range(2):
-            self.run_on(3, words, "run 5\nwrite_restart half.restart\nrun 5\n")
+            self.liggghts(self.script(3, words, f"run {half}\nwrite_restart half.restart\nrun {half}\n"), ranks=3)
             found.append((self.folder / "d.dump").read_bytes())
         self.assertEqual(*found)
         steps = read_dump(self.folder / "d.dump")
-        for ranks in (1, 2, 3):
-            again = self.run_on(ranks, words, "run 5\n", restart="half.restart")[1]
+        for ranks in in_long((1, 2, 3), (1, 3)):
+            self.liggghts(self.script(ranks, words, f"run {half}\n", restart="half.restart"), ranks=ranks)
+            again = read_dump(self.folder / "d.dump")
             last = max(again)
             difference = largest_difference(forces(again[last]), forces(steps[last]))
             self.assertLess(difference, 1e-7)
