@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Error against run time: measures, and writes doc/error_vs_time.md and its figures.
 
-    doc/error_vs_time.py [PART...]     about an hour for `all` parts
+    doc/error_vs_time.py [PART...]     some forty minutes for `all` parts
     doc/error_vs_time.py check         whether the sources are those that the page's figures follow from
     doc/error_vs_time.py again         three cheap figures once more, against the page's
 

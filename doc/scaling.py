@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of doc/scaling.md:  doc/scaling.py [solve] [coupled] [runs] [agreement] [million]
+"""The tables of doc/scaling.md:  doc/scaling.py [solve] [coupled] [messages] [runs] [agreement] [million]
 
 `pfv solve` of dense packings on several ranks, and on one from 25 000 grains on; 50 coupled steps of LIGGGHTS on one and
-several ranks; three small coupled runs to their end, and how far they differ (tests/coupled/coupled_runs.py); by how much several ranks differ from
-one on many packings (rank_agreement.py); all of it
-without a word. With `million` up to a million grains, which takes 9 GB. Every packing is made of
+several ranks; what ranks tell each other, and a model fitted to it all (scaling_model.py); three small coupled runs to
+their end, and how far they differ (tests/coupled/coupled_runs.py); by how much several ranks differ from one on many
+packings (rank_agreement.py); all of it without a word. With `million` up to a million grains, which takes 9 GB. Every packing is made of
 mirrored copies of one of 25 000 grains. CPU time, since ranks share cores here. Some minutes;
 `coupled million` 20.
 """
@@ -22,8 +22,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.append(str(ROOT / "tests/coupled"))
 from coupled_runs import Runs
 import rank_agreement
+import scaling_model
 PAGE = ROOT / "doc/scaling.md"
-PFV, MAKE, LIGGGHTS = (ROOT / "build/bin" / name for name in ("pfv", "pfv_dense_packing", "liggghts-pfv"))
+PFV, MAKE, LIGGGHTS, COUNTER = (ROOT / "build/bin" / name for name in ("pfv", "pfv_dense_packing", "liggghts-pfv",
+                                                                   "libpfv_message_count.so"))
 MPIRUN = [os.environ.get("PFV_MPIRUN", "mpirun"), "--allow-run-as-root", "--oversubscribe", "--mca",
           "mpi_yield_when_idle", "1"]
 GRAINS = 25000
@@ -62,12 +64,15 @@ class Packings:
                           fmt=["%d"] + ["%.17g"] * 4)
         return path
 
+    def command(self, counts):
+        box = [text for count in counts for text in ("0", str(count))]
+        return [PFV, "solve", "--packing", self.file(counts), "--box", *box, "--face", "zlo:pressure=0", "--face",
+                "zhi:pressure=1", "--wall", "symmetry", "--solver", "amg", "--tolerance", TOLERANCE, "--report",
+                "report.json", "--forces", "forces.csv"]
+
     def solve(self, counts, ranks):
         """Report, and forces of all grains."""
-        box = [text for count in counts for text in ("0", str(count))]
-        command = [PFV, "solve", "--packing", self.file(counts), "--box", *box, "--face", "zlo:pressure=0", "--face",
-                   "zhi:pressure=1", "--wall", "symmetry", "--solver", "amg", "--tolerance", TOLERANCE, "--report",
-                   "report.json", "--forces", "forces.csv"]
+        command = self.command(counts)
         launch = [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []
         subprocess.run([*launch, *command], cwd=self.folder, check=True, capture_output=True)
         forces = numpy.loadtxt(self.folder / "forces.csv", delimiter=",", skiprows=1, usecols=(1, 2, 3))
@@ -171,18 +176,37 @@ def phase(text, name):
     sys.exit(f"no phase {name} in:\n{text}")
 
 
+def flow_script(counts):
+    walls = " ".join(f"face {axis}{side} plane {count if side == 'hi' else 0} symmetry"
+                     for axis, count in zip("xyz", counts) for side in ("lo", "hi")) + " pressure 0"
+    return f"{SCRIPT}fix flow all pfv viscosity 1e-3 density 1000 solver amg couple_every 1 {walls}\nrun {STEPS}\n"
+
+
+def messages(packings):
+    """Their table, and what more ranks are expected to take."""
+    folder, grains = packings.folder, GRAINS * numpy.prod(SHARED)
+    counts = {ranks: scaling_model.counted(folder, packings.command(SHARED), MPIRUN, ranks, COUNTER) for ranks in (2, 4, 8, 16)}
+    write_data(folder / "grains.data", copies(packings.block, SHARED), SHARED)
+    (folder / "in.coupled").write_text(flow_script(SHARED))
+    cycles = scaling_model.counted(folder, [LIGGGHTS, "-in", "in.coupled"], MPIRUN, 2, COUNTER)[0] / STEPS
+    told = table(["ranks", "iterations", "messages a rank and iteration", "kB a rank and iteration", "sums over all, an iteration"],
+                 [[str(ranks), f"{count[0]:.0f}", f"{count[1]:.0f}", f"{count[2] / 1e3:.0f}", f"{count[3]:.1f}"]
+                  for ranks, count in counts.items()])
+    model = scaling_model.Model(PAGE.read_text(), grains, counts, cycles)
+    note = (f"Fitted: parts of n grains that share s of their six sides with others take 1 + {model.halo_work:.1f} s n^(-1/3) of the "
+            f"work and 1 + {model.halo_memory:.1f} s n^(-1/3) of the memory; {cycles:.1f} iterations a flow step.\n\n")
+    head = ["grains", "ranks", "a flow step, s", "of it messages, ms", "a network, s", "MB a rank", "of the best"]
+    return told, note + table(head, model.rows((1000000, 10000000)))
+
+
 def coupled(packings, sizes):
     rows = []
     for grains, counts in sizes.items():
         folder = packings.folder
         write_data(folder / "grains.data", copies(packings.block, counts), counts)
-        walls = " ".join(f"face {axis}{side} plane {count if side == 'hi' else 0} symmetry"
-                         for axis, count in zip("xyz", counts) for side in ("lo", "hi")) + " pressure 0"
         own = {steps: run_liggghts(folder, f"{SCRIPT}run {steps}\n", 1)[1] for steps in (0, STEPS)}
         for ranks in (1, 2, 4) if grains < 1000000 else (1, 2):
-            text, seconds, memory = run_liggghts(
-                folder, f"{SCRIPT}fix flow all pfv viscosity 1e-3 density 1000 solver amg couple_every 1 {walls}\n"
-                        f"run {STEPS}\n", ranks)
+            text, seconds, memory = run_liggghts(folder, flow_script(counts), ranks)
             networks = sum(phase(text, name)[0] for name in ("triangulate", "throats", "factor"))
             solve, solves = phase(text, "solve")
             step = sum(phase(text, name)[0] for name in ("assemble", "solve", "forces")) / solves
@@ -240,23 +264,27 @@ def memory_of_few(folder):
 
 def main():
     words = set(sys.argv[1:])
-    if words - {"solve", "coupled", "runs", "agreement", "million"}:
+    if words - {"solve", "coupled", "messages", "runs", "agreement", "million"}:
         sys.exit(__doc__)
     million = MILLION if "million" in words else {}
-    parts = words - {"million"} or {"solve", "coupled", "runs", "agreement"}
+    parts = words - {"million"} or {"solve", "coupled", "messages", "runs", "agreement"}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         if "runs" in parts:
             replace("runs", runs(folder))
         if "agreement" in parts:
             replace("agreement", agreement(folder))
-        packings = Packings(folder) if parts & {"solve", "coupled"} else None
+        packings = Packings(folder) if parts & {"solve", "coupled", "messages"} else None
         if "solve" in parts:
             empty = memory_of_few(folder)
             replace("ranks", by_ranks(packings, empty))
             replace("sizes", by_size(packings, empty, {**SIZES, **million}))
         if "coupled" in parts:
             replace("coupled", coupled(packings, {size: SIZES[size] for size in (25000, 100000)} | million))
+        if "messages" in parts:
+            told, expected = messages(packings)
+            replace("messages", told)
+            replace("model", expected)
 
 
 main()
