@@ -118,7 +118,9 @@ void FixPfv::check_contact_stress() {
   if (!obstacle.empty()) stop(FLERR, obstacle);
 }
 
+/// Once, whichever ranks hold the flow: LIGGGHTS gives each of them a screen.
 void FixPfv::print(const std::string& text) {
+  if (!ranks_.is_first()) return;
   for (FILE* file : {screen, logfile})
     if (file) std::fputs(text.c_str(), file);
 }

@@ -189,7 +189,9 @@ void FixPfv::warn_of_empty_box() const {
   warn_of(text.str());
 }
 
+/// Once, whichever ranks hold the flow: all that do know of it.
 void FixPfv::warn_of(const std::string& problem) const {
+  if (!ranks_.is_first()) return;
   error->warning(FLERR, ("Fix pfv (id " + std::string(id) + "): " + units().relabelled(problem)).c_str());
 }
 
