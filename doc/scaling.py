@@ -194,7 +194,7 @@ def messages(packings):
                   for ranks, count in counts.items()])
     model = scaling_model.Model(PAGE.read_text(), grains, counts, cycles)
     note = (f"Fitted: parts of n grains that share s of their six sides with others take 1 + {model.halo_work:.1f} s n^(-1/3) of the "
-            f"work and 1 + {model.halo_memory:.1f} s n^(-1/3) of the memory; {cycles:.1f} iterations a flow step.\n\n")
+            f"work and 1 + {model.halo_memory:.1f} s n^(-1/3) of the memory; {cycles:.1f} iterations a flow step, with those of the first limit of the time step in 50 steps.\n\n")
     head = ["grains", "ranks", "a flow step, s", "of it messages, ms", "a network, s", "MB a rank", "of the best"]
     return told, note + table(head, model.rows((1000000, 10000000)))
 
