@@ -140,7 +140,8 @@ void write_solver_table(std::ostream& out) {
     out << "| `" << solver.name << '`' << (resolved(SolverKind::automatic) == solver.value ? " (`auto`)" : "") << " | "
         << code(solver.analysed) << " | " << code(solver.factored) << " | " << solver.solved << " | " << orderings_of(solver)
         << " | " << (solver.is_iterative ? detail::number_text(solver.tolerance) : none);
-    for (const bool ability : {solver.shares_work, solver.factors_beside_steps, solver.shared_by_ranks, solver.mixed_precision, solver.implicit_steps})
+    for (const bool ability : {solver.shares_work, solver.factors_beside_steps, solver.shared_by_ranks, solver.mixed_precision,
+                               solver.implicit_steps})
       out << " | " << yes_or_no(ability);
     out << " |\n";
   }

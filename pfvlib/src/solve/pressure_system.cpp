@@ -113,12 +113,12 @@ namespace {
 
 /// Not by ghosts whose throats are not all here: these may belong to a patch of which their place does not tell.
 Eigen::VectorXd flux_boundaries_reached(const Unknowns& unknowns, const Share& share) {
-  Eigen::VectorXd reached = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns.of_boundary.size()));
+  std::vector<char> has_pore(static_cast<std::size_t>(unknowns.count), 0);
   for (std::size_t pore = 0; pore < unknowns.of_pore.size(); ++pore)
-    for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b)
-      if (unknowns.of_pore[pore] >= 0 && unknowns.of_pore[pore] == unknowns.of_boundary[b] &&
-          share.has_whole(static_cast<int>(pore)))
-        reached[static_cast<Eigen::Index>(b)] = 1.0;
+    if (unknowns.of_pore[pore] >= 0 && share.has_whole(static_cast<int>(pore))) has_pore[unknowns.of_pore[pore]] = 1;
+  Eigen::VectorXd reached = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns.of_boundary.size()));
+  for (std::size_t b = 0; b < unknowns.of_boundary.size(); ++b)
+    if (const int unknown = unknowns.of_boundary[b]; unknown >= 0) reached[static_cast<Eigen::Index>(b)] = has_pore[unknown];
   if (share.ranks) share.ranks->take_largest(reached.data(), unknowns.of_boundary.size());
   return reached;
 }

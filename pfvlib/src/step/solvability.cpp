@@ -145,9 +145,8 @@ std::string what_is_undetermined(const Problem& problem, bool moving) {
 
 void refuse_undetermined(const Problem& problem, bool moving) {
   const std::string text = what_is_undetermined(problem, moving);
-  const auto refuse = [&] {
-    if (!text.empty()) throw InputError(text);
-  };
+  if (text.empty()) return;  // on all ranks alike
+  const auto refuse = [&text] { throw InputError(text); };
   if (problem.ranks) problem.ranks->together(refuse);
   else refuse();
 }
